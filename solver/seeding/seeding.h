@@ -1,0 +1,40 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* From bodies (shape, lattice, initial stress) to particles, as flat arrays. No JSON, no files. */
+#ifndef TALUS_SEEDING_H
+#define TALUS_SEEDING_H
+
+#include "talus/scene.h"
+#include "talus/status.h"
+
+/* Particles of all bodies in the order of the scene; within a body in lattice order (x fastest).
+ * The id of a particle is its index here. Arrays are owned by the seed. */
+struct particle_seed {
+    size_t count;
+    double *position[3];   /* [count] m; components beyond the dimension 0 */
+    double *velocity[3];   /* [count] m/s */
+    double *volume;        /* [count] current volume, m^3 (per metre / m^2) */
+    double *mass;          /* [count] kg = density x volume */
+    double *stress[6];     /* [count] initial Cauchy stress [Pa]; NULL if no body has any */
+    uint16_t *body;        /* [count] index of the body */
+    double *volume_factor; /* [body_count] common factor that makes the volume of a body exact */
+};
+
+/* Seeds all bodies. TALUS_INVALID with a pointer into the scene ("/bodies/0/...") for a body
+ * without particles, a volume factor outside 0.9..1.1, material outside the grid or inside a box
+ * obstacle. */
+TALUS_MUST_CHECK enum talus_status seeding_create(const struct talus_scene *scene,
+                                                  struct particle_seed *seed,
+                                                  struct talus_error *error);
+void seeding_release(struct particle_seed *seed);
+
+/* Without allocating particles: how many lattice points the bounding boxes hold at most, and how
+ * many cells the bodies touch (both exact for boxes). Never overflows: saturates at UINT64_MAX. */
+void seeding_count(const struct talus_scene *scene, uint64_t *particle_count, uint64_t *cell_count);
+
+/* Volume of a body's shape after clipping [m^3, m^2 x 1 m, m x 1 m^2]. */
+double seeding_body_volume(const struct talus_scene *scene, const struct talus_body *body);
+
+/* Axis on which gravity is largest (depth runs along it), or TALUS_NO_AXIS without gravity. */
+enum talus_axis seeding_vertical_axis(const struct talus_scene *scene);
+
+#endif

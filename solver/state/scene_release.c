@@ -1,0 +1,32 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+#include "talus/scene.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+void talus_scene_release(struct talus_scene *scene)
+{
+    for (size_t index = 0; index < scene->material_count; index++) {
+        free(scene->materials[index].name);
+        free(scene->materials[index].values);
+    }
+    for (size_t index = 0; index < scene->body_count; index++)
+        free(scene->bodies[index].name);
+    for (size_t index = 0; index < scene->boundary_count; index++)
+        free(scene->boundaries[index].name);
+    for (size_t index = 0; index < scene->probe_count; index++)
+        free(scene->probes[index].name);
+    for (size_t index = 0; index < scene->reference_count; index++) {
+        free(scene->references[index].name);
+        free(scene->references[index].time);
+        free(scene->references[index].value);
+        free(scene->references[index].of_job);
+    }
+    free(scene->materials);
+    free(scene->bodies);
+    free(scene->boundaries);
+    free(scene->probes);
+    free(scene->references);
+    free(scene->title);
+    memset(scene, 0, sizeof *scene);
+}
