@@ -27,12 +27,29 @@ TALUS_MUST_CHECK enum talus_status seeding_create(const struct talus_scene *scen
                                                   struct talus_error *error);
 void seeding_release(struct particle_seed *seed);
 
-/* Without allocating particles: how many lattice points the bounding boxes hold at most, and how
- * many cells the bodies touch (both exact for boxes). Never overflows: saturates at UINT64_MAX. */
+/* Bodies with more lattice points than this in all are refused before anything is allocated. */
+enum { SEEDING_PARTICLE_MAX = 200000000 };
+
+/* Checks one body without allocating: empty shape, no particles, volume factor, particle limit,
+ * material outside the grid or inside a box obstacle. Errors as in seeding_create. A body whose
+ * lattice has more than 2^20 rows is not counted out: its volume factor is left to
+ * seeding_create. */
+TALUS_MUST_CHECK enum talus_status seeding_check(const struct talus_scene *scene, size_t body_index,
+                                                 struct talus_error *error);
+
+/* Without allocating particles, in microseconds to milliseconds: how many particles the bodies get
+ * (exact for boxes and up to 2^16 lattice rows a body, otherwise body volume over lattice cell
+ * volume) and how many cells their bounding boxes touch (exact for boxes; cells that bodies share
+ * count twice). Never overflows: saturates at UINT64_MAX. */
 void seeding_count(const struct talus_scene *scene, uint64_t *particle_count, uint64_t *cell_count);
 
 /* Volume of a body's shape after clipping [m^3, m^2 x 1 m, m x 1 m^2]. */
 double seeding_body_volume(const struct talus_scene *scene, const struct talus_body *body);
+
+/* Ratio of horizontal to vertical initial stress [-] that a body's K0 rule gives: as given; elastic
+ * nu/(1-nu); Jaky 1-sin(phi) (Andersen 2012, eq. 51); auto: the larger of nu/(1-nu) and the active
+ * coefficient (1-sin(phi))/(1+sin(phi)). */
+double seeding_k0(const struct talus_scene *scene, const struct talus_body *body);
 
 /* Axis on which gravity is largest (depth runs along it), or TALUS_NO_AXIS without gravity. */
 enum talus_axis seeding_vertical_axis(const struct talus_scene *scene);
