@@ -47,7 +47,7 @@ struct talus_solver_options {
     enum talus_strain strain;
     enum talus_anti_locking_control anti_locking; /* field: volumetric */
     enum talus_anti_locking_apply anti_locking_apply;
-    double viscous_damping; /* C [-], THEORY 7.1 */
+    double viscous_damping; /* C [-] of the viscous stress C rho h c tr(d) 1 */
     double local_damping;   /* [-] share of the out-of-balance force */
     double force_ramp;      /* [s]; 0: none */
 };
@@ -104,7 +104,7 @@ struct talus_boundary {
     enum talus_boundary_shape shape;
     double point[3],
         normal[3]; /* plane and face: a point of it (face: centre), unit normal into the material */
-    double axis_1[3], axis_2[3];         /* face: in-plane unit axes t1, t2 (THEORY 6.1) */
+    double axis_1[3], axis_2[3];         /* face: in-plane unit axes t1, t2 */
     double size[2];                      /* face: full lengths along t1, t2 [m] */
     double box_min[3], box_max[3];       /* box */
     struct talus_boundary_face faces[6]; /* [face_count] */

@@ -92,7 +92,7 @@ bool talus_simulation_take_warning(struct talus_simulation *simulation,
                                    struct talus_warning *warning);
 
 /* At the end: TALUS_AUDIT with the figures in *error if mass, momentum or energy fail their limits
- * (INTERFACE: mass 1e-12, momentum 1e-9 of the impulse exchanged, energy growth 1 %). */
+ * (mass 1e-12, momentum 1e-9 of the impulse exchanged, energy growth 1 %). */
 TALUS_MUST_CHECK enum talus_status talus_simulation_audit(struct talus_simulation *simulation,
                                                           struct talus_error *error);
 

@@ -4,7 +4,7 @@
  * A material turns a trial elastic strain into stress, for a batch of particles at once. Kinematics
  * (finite or small strain), anti-locking and storage are not its business: at finite strain the
  * strain is the logarithmic (Hencky) elastic strain and the stress is the Kirchhoff stress, at
- * small strain they are the small elastic strain and the Cauchy stress (THEORY 3.2).
+ * small strain they are the small elastic strain and the Cauchy stress (Mast 2013, table 3.4).
  *
  * Lifecycle: `prepare` turns the values of a scene into the model's own constants (a flat struct
  * without pointers, `constants_size` bytes, owned by the caller), once per scene. */
@@ -96,12 +96,12 @@ size_t material_parameters(const struct material *material, const struct paramet
 size_t material_parameter_index(const struct material *material, const char *key);
 enum { MATERIAL_VALUE_DENSITY = 0, MATERIAL_PARAMETER_MAX = 64 };
 
-/* Bulk and shear modulus [Pa] out of either pair of elastic constants (THEORY 0). For models with
+/* Bulk and shear modulus [Pa] out of either pair of elastic constants. For models with
  * own elasticity: bulk_modulus and 0. */
 void material_elastic_moduli(const struct material *material, const double *values, double *bulk,
                              double *shear);
-/* Active earth pressure coefficient for the K0 rule `auto` (THEORY 4.8), from the friction angle in
- * force at the start; 0 where the model has none. And sin(phi) for Jaky's rule. */
+/* Friction angle in force at the start; 0 where the model has none. The K0 rules need it: `auto` is
+ * max(nu/(1-nu), Ka), Jaky's is 1 - sin(phi). */
 double material_initial_friction_angle_deg(const struct material *material, const double *values);
 
 #endif

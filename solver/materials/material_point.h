@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Drives one material point along a path with mixed strain and stress control (INTERFACE, Material
- * point): what `talus-worker point` and the material tests run. */
+/* Drives one material point along a path with mixed strain and stress control:
+ * what `talus-worker point` and the material tests run. */
 #ifndef TALUS_MATERIAL_POINT_H
 #define TALUS_MATERIAL_POINT_H
 

@@ -41,7 +41,7 @@ TALUS_MUST_CHECK enum talus_status scene_read_file(const char *path, struct talu
  *  "disk_bytes","wall_seconds":{"low","expected","high"}}; NULL with *error set (over-critical
  * step, ...). */
 json_t *scene_forecast(const struct talus_scene *scene, int threads, struct talus_error *error);
-/* [{"pointer","code","detail","change","saves"}] (INTERFACE, Advice). */
+/* [{"pointer","code","detail","change","saves"}]. */
 json_t *scene_advice(const struct talus_scene *scene);
 /* Every model, shape, boundary, probe, field and parameter with units and bounds. */
 json_t *scene_describe(void);
