@@ -13,11 +13,11 @@
  *   {"event":"frame",...,"n":N,"time":S,"step":N,"particles":N,"fields":[...],"bytes":B,"sha256":"...","file":"frames/frame_000000.hdf"}
  *   {"event":"warning",...,"code":"...","pointer":"...","detail":"..."}
  *   {"event":"log",...,"level":"info","detail":"..."}
- *   {"event":"rewind",...,"row":N,"time":S,"frame":N}   after --resume: later rows and frames are
- * void
- *   {"event":"checkpoint",...,"time":S,"step":N,"row":N,"frame":N}
+ *   {"event":"rewind",...,"row":N,"time":S,"frame":N}   after --resume: the first N rows and the
+ * first N frames stand, later ones are void (0: all are)
+ *   {"event":"checkpoint",...,"time":S,"step":N,"row":N,"frame":N}   counts, as in rewind
  *   {"event":"finished",...,"metrics":{...}}            the last line of a run that succeeded
- *   {"event":"failed",...,"reason":"unstable|audit|time_limit|memory_limit|disk_limit|cancelled|invalid","detail":"...","metrics":{...}}
+ *   {"event":"failed",...,"reason":"unstable|audit|time_limit|memory_limit|disk_limit|cancelled|invalid|crashed","detail":"...","metrics":{...}}
  *
  * Every line carries "at" and "attempt". A line is written by one write(2). The worker exits with
  * the codes below. history.json: {"columns":[{"name","unit"}],"row_bytes":8*columns}; column 0 is
