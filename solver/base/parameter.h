@@ -18,10 +18,15 @@ struct parameter {
     bool above_minimum, below_maximum; /* the bound itself is excluded */
     bool required;                     /* with `alternative`: one of the group is required */
     double default_value;              /* NAN: none; choices: index; booleans: 0 or 1 */
-    const char *alternative; /* exactly (required) or at most one of the keys with the same name may
-                                be given; or NULL */
+    /* Name of a group of alternatives, or NULL: exactly one (required) or at most one of its
+     * top-level keys may be given; the keys of one nested object stand or fall together. `required`
+     * and the default of a key hold only if its alternative is the chosen one; if none is given,
+     * the alternative with a default is chosen. */
+    const char *alternative;
     const char *const *choices; /* PARAMETER_CHOICE: NULL-terminated */
-    const char *meaning;        /* for people */
+    const char *const
+        *reserved_choices; /* names refused as `unsupported`; NULL-terminated or NULL */
+    const char *meaning;   /* for people */
 };
 
 #endif

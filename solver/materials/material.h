@@ -4,7 +4,7 @@
  * A material turns a trial elastic strain into stress, for a batch of particles at once. Kinematics
  * (finite or small strain), anti-locking and storage are not its business: at finite strain the
  * strain is the logarithmic (Hencky) elastic strain and the stress is the Kirchhoff stress, at
- * small strain they are the small elastic strain and the Cauchy stress (Mast 2013, table 3.4).
+ * small strain they are the small elastic strain and the Cauchy stress (Mast 2013, sec. 3.2).
  *
  * Lifecycle: `prepare` turns the values of a scene into the model's own constants (a flat struct
  * without pointers, `constants_size` bytes, owned by the caller), once per scene. */
@@ -51,6 +51,8 @@ struct material {
     const char *summary;                /* one sentence for people */
     const struct parameter *parameters; /* ends with key NULL; without `density` and the elastic
                                            constants unless own_elasticity is set */
+    const char *const *reserved_keys;   /* refused as `unsupported`, not as unknown keys;
+                                           NULL-terminated or NULL */
     bool own_elasticity; /* the table itself holds what the model knows of elasticity (fluids) */
     bool volumetric;     /* stores ln J only, in strain[0]; no deviatoric strain */
     bool needs_rate;     /* wants batch->rate */
@@ -79,6 +81,9 @@ struct material {
     /* Elastic strain that gives a stress (initial states): K, G law; fluids: strain[0] = ln J. */
     void (*strain_from_stress)(const void *constants, const double stress[SYM3_COMPONENTS],
                                double strain[SYM3_COMPONENTS]);
+    /* Friction angle [deg] of a virgin state as a triaxial compression test would measure it; NULL
+     * for models without friction. Values have passed `check`. */
+    double (*initial_friction_angle_deg)(const double *values);
 };
 
 /* All models, in the order of materials.def. */
@@ -100,8 +105,9 @@ enum { MATERIAL_VALUE_DENSITY = 0, MATERIAL_PARAMETER_MAX = 64 };
  * own elasticity: bulk_modulus and 0. */
 void material_elastic_moduli(const struct material *material, const double *values, double *bulk,
                              double *shear);
-/* Friction angle in force at the start; 0 where the model has none. The K0 rules need it: `auto` is
- * max(nu/(1-nu), Ka), Jaky's is 1 - sin(phi). */
+/* Friction angle [deg] in force at the start, before any plastic strain, as a triaxial compression
+ * test would measure it: sets the active earth pressure coefficient of the K0 rule `auto` and
+ * Jaky's 1 - sin(phi). 0 where the model has none. */
 double material_initial_friction_angle_deg(const struct material *material, const double *values);
 
 #endif

@@ -1,0 +1,48 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* Isotropic linear elasticity between strain and stress, which all solids share: small strain and
+ * Cauchy stress, or Hencky strain and Kirchhoff stress (Mast 2013, sec. 3.2; the tensor is
+ * K 1(x)1 + 2 G (I - 1(x)1/3), in his eq. 3.46 the 2 is missing). */
+#ifndef TALUS_ELASTICITY_H
+#define TALUS_ELASTICITY_H
+
+#include "materials/material_issue.h"
+#include "materials/material_kernel.h"
+
+struct elasticity {
+    double bulk, shear; /* K, G [Pa] */
+    double density;     /* reference density [kg/m^3] */
+};
+
+/* Places of the shared parameters in an array of values; a model's own table follows. */
+enum elasticity_value {
+    ELASTICITY_DENSITY = MATERIAL_VALUE_DENSITY,
+    ELASTICITY_BULK_MODULUS,
+    ELASTICITY_SHEAR_MODULUS,
+    ELASTICITY_YOUNG_MODULUS,
+    ELASTICITY_POISSON_RATIO,
+    ELASTICITY_VALUE_COUNT,
+};
+
+/* Out of checked values of a solid. */
+struct elasticity elasticity_read(const double *values);
+/* Adds a contradiction if the constants given are not one of the two pairs. */
+void elasticity_check(const double *values, struct material_issues *issues);
+/* sqrt((K + 4 G / 3) / rho) [m/s] */
+double elasticity_wave_speed(const struct elasticity *elasticity);
+/* The inverse law: strain that gives a stress. */
+void elasticity_strain_from_stress(const struct elasticity *elasticity,
+                                   const double stress[SYM3_COMPONENTS],
+                                   double strain[SYM3_COMPONENTS]);
+/* K tr(e)^2 / 2 + G |dev e|^2 into energy[batch->count]. */
+void elasticity_strain_energy(const struct elasticity *elasticity,
+                              const struct material_batch *batch, double *energy);
+
+TALUS_INLINE struct sym3 elasticity_stress(const struct elasticity *elasticity, struct sym3 strain)
+{
+    double volumetric = sym3_trace(strain);
+    struct sym3 deviator = sym3_add_diagonal(strain, -volumetric / 3.0);
+    return sym3_add_diagonal(sym3_scale(2.0 * elasticity->shear, deviator),
+                             elasticity->bulk * volumetric);
+}
+
+#endif

@@ -1,0 +1,125 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* Value structs for small vectors and tensors. Everything is inlined into the loops that use it, so
+ * that a loop over a structure of arrays vectorises; symmetric shear components are tensorial. */
+#ifndef TALUS_TENSOR_H
+#define TALUS_TENSOR_H
+
+#include <math.h>
+
+#define TALUS_INLINE static inline __attribute__((always_inline, unused))
+
+struct vec3 {
+    double x, y, z;
+};
+
+struct sym3 {
+    double xx, yy, zz, xy, yz, xz;
+};
+
+struct mat3 {
+    double m[3][3]; /* m[row][column] */
+};
+
+TALUS_INLINE double vec3_dot(struct vec3 a, struct vec3 b)
+{
+    return a.x * b.x + a.y * b.y + a.z * b.z;
+}
+
+TALUS_INLINE double sym3_trace(struct sym3 a)
+{
+    return a.xx + a.yy + a.zz;
+}
+
+/* a : b, every off-diagonal pair counted twice. */
+TALUS_INLINE double sym3_dot(struct sym3 a, struct sym3 b)
+{
+    return a.xx * b.xx + a.yy * b.yy + a.zz * b.zz +
+           2.0 * (a.xy * b.xy + a.yz * b.yz + a.xz * b.xz);
+}
+
+TALUS_INLINE double sym3_norm(struct sym3 a)
+{
+    return sqrt(sym3_dot(a, a));
+}
+
+TALUS_INLINE struct sym3 sym3_add(struct sym3 a, struct sym3 b)
+{
+    return (struct sym3){a.xx + b.xx, a.yy + b.yy, a.zz + b.zz,
+                         a.xy + b.xy, a.yz + b.yz, a.xz + b.xz};
+}
+
+TALUS_INLINE struct sym3 sym3_scale(double factor, struct sym3 a)
+{
+    return (struct sym3){factor * a.xx, factor * a.yy, factor * a.zz,
+                         factor * a.xy, factor * a.yz, factor * a.xz};
+}
+
+/* a + factor b */
+TALUS_INLINE struct sym3 sym3_add_scaled(struct sym3 a, double factor, struct sym3 b)
+{
+    return sym3_add(a, sym3_scale(factor, b));
+}
+
+/* a + value 1 */
+TALUS_INLINE struct sym3 sym3_add_diagonal(struct sym3 a, double value)
+{
+    return (struct sym3){a.xx + value, a.yy + value, a.zz + value, a.xy, a.yz, a.xz};
+}
+
+TALUS_INLINE struct sym3 sym3_deviator(struct sym3 a)
+{
+    return sym3_add_diagonal(a, -sym3_trace(a) / 3.0);
+}
+
+TALUS_INLINE double sym3_determinant(struct sym3 a)
+{
+    return a.xx * (a.yy * a.zz - a.yz * a.yz) - a.xy * (a.xy * a.zz - a.yz * a.xz) +
+           a.xz * (a.xy * a.yz - a.yy * a.xz);
+}
+
+TALUS_INLINE struct mat3 mat3_multiply(struct mat3 a, struct mat3 b)
+{
+    struct mat3 c;
+    for (int i = 0; i < 3; i++) {
+        for (int j = 0; j < 3; j++)
+            c.m[i][j] = a.m[i][0] * b.m[0][j] + a.m[i][1] * b.m[1][j] + a.m[i][2] * b.m[2][j];
+    }
+    return c;
+}
+
+TALUS_INLINE double mat3_determinant(struct mat3 a)
+{
+    return a.m[0][0] * (a.m[1][1] * a.m[2][2] - a.m[1][2] * a.m[2][1]) -
+           a.m[0][1] * (a.m[1][0] * a.m[2][2] - a.m[1][2] * a.m[2][0]) +
+           a.m[0][2] * (a.m[1][0] * a.m[2][1] - a.m[1][1] * a.m[2][0]);
+}
+
+TALUS_INLINE struct mat3 mat3_from_sym3(struct sym3 a)
+{
+    return (struct mat3){{{a.xx, a.xy, a.xz}, {a.xy, a.yy, a.yz}, {a.xz, a.yz, a.zz}}};
+}
+
+/* Symmetric part. */
+TALUS_INLINE struct sym3 mat3_symmetric(struct mat3 a)
+{
+    return (struct sym3){a.m[0][0],
+                         a.m[1][1],
+                         a.m[2][2],
+                         0.5 * (a.m[0][1] + a.m[1][0]),
+                         0.5 * (a.m[1][2] + a.m[2][1]),
+                         0.5 * (a.m[0][2] + a.m[2][0])};
+}
+
+/* r a r^T for a symmetric a: turns it by the rotation r, or pushes it forward by r. */
+TALUS_INLINE struct sym3 sym3_push_forward(struct mat3 r, struct sym3 a)
+{
+    struct mat3 full = mat3_multiply(r, mat3_from_sym3(a));
+    struct mat3 transposed;
+    for (int i = 0; i < 3; i++) {
+        for (int j = 0; j < 3; j++)
+            transposed.m[i][j] = r.m[j][i];
+    }
+    return mat3_symmetric(mat3_multiply(full, transposed));
+}
+
+#endif
