@@ -1,0 +1,119 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* What no single entry of a scene can tell: bodies in the grid, initial states, cost. */
+#include "scene/scene_sections.h"
+
+#include "materials/material.h"
+#include "seeding/seeding.h"
+
+#include <stdio.h>
+
+/* Geometry of the bodies that were read without a mistake. */
+static void check_bodies(struct scene_reader *reader)
+{
+    const struct talus_scene *scene = reader->scene;
+    const struct scene_issues *issues = reader->issues;
+    if (scene->axis_count == 0 || scene_issues_under(issues, "/grid") ||
+        scene_issues_under(issues, "/boundaries"))
+        return;
+    for (size_t index = 0; index < scene->body_count; index++) {
+        char pointer[32];
+        struct talus_error error = {.status = TALUS_OK};
+        (void)snprintf(pointer, sizeof pointer, "/bodies/%zu", index);
+        if (!scene_issues_under(issues, pointer) && seeding_check(scene, index, &error) != TALUS_OK)
+            scene_mistake_at(reader, error.pointer, error.code, error.text);
+    }
+    uint64_t particles, cells;
+    if (scene_issues_under(issues, "/bodies"))
+        return;
+    seeding_count(scene, &particles, &cells);
+    if (particles > SEEDING_PARTICLE_MAX)
+        scene_mistake_at(reader, "/bodies", "range",
+                         "all bodies together ask for more than 200 million particles");
+}
+
+static bool has_shear(const double stress[6])
+{
+    double largest = fmax(fabs(stress[0]), fmax(fabs(stress[1]), fabs(stress[2])));
+    double slack = 1e-9 * largest;
+    return fabs(stress[0] - stress[1]) > slack || fabs(stress[1] - stress[2]) > slack ||
+           stress[3] != 0.0 || stress[4] != 0.0 || stress[5] != 0.0;
+}
+
+/* Initial stresses that the material or the scene cannot have. */
+static void check_initial_stress(struct scene_reader *reader, size_t body_index)
+{
+    const struct talus_scene *scene = reader->scene;
+    const struct talus_body *body = &scene->bodies[body_index];
+    const struct talus_material *entry = &scene->materials[body->material_index];
+    const struct material *model = material_table[entry->model_index];
+    struct scene_path bodies = {.key = "bodies"};
+    struct scene_path parent = {.parent = &bodies, .index = body_index};
+    struct scene_path here = {.parent = &parent, .key = "initial_stress"};
+    bool depth = body->initial_stress == TALUS_INITIAL_HYDROSTATIC ||
+                 body->initial_stress == TALUS_INITIAL_GEOSTATIC;
+    if (depth && seeding_vertical_axis(scene) == TALUS_NO_AXIS)
+        scene_mistake(reader, &here, "contradiction", NULL, NULL,
+                      "a stress that grows with depth needs gravity");
+    if (!model->volumetric)
+        return;
+    if (body->initial_stress == TALUS_INITIAL_GIVEN && has_shear(body->stress))
+        scene_mistake(reader, &here, "contradiction", NULL, NULL,
+                      "a fluid at rest carries no shear: the stress must be a pressure");
+    if (body->initial_stress == TALUS_INITIAL_GEOSTATIC &&
+        fabs(seeding_k0(scene, body) - 1.0) > 1e-9)
+        scene_mistake(reader, &here, "contradiction", NULL, NULL,
+                      "a fluid at rest has k0 = 1: use \"hydrostatic\"");
+}
+
+/* K0 beyond the active or passive limit of a material without cohesion: the first step would
+ * return the state to the yield surface. */
+static void warn_of_k0(struct scene_reader *reader, size_t body_index)
+{
+    const double radians_per_degree = 3.14159265358979323846 / 180.0;
+    const struct talus_scene *scene = reader->scene;
+    const struct talus_body *body = &scene->bodies[body_index];
+    const struct talus_material *entry = &scene->materials[body->material_index];
+    const struct material *model = material_table[entry->model_index];
+    struct scene_path bodies = {.key = "bodies"};
+    struct scene_path parent = {.parent = &bodies, .index = body_index};
+    struct scene_path stress = {.parent = &parent, .key = "initial_stress"};
+    struct scene_path rule = {.parent = &stress, .key = "geostatic"};
+    struct scene_path here = {.parent = &rule, .key = "k0"};
+    double sine =
+        sin(material_initial_friction_angle_deg(model, entry->values) * radians_per_degree);
+    if (body->initial_stress != TALUS_INITIAL_GEOSTATIC || sine <= 0.0)
+        return;
+    double active = (1.0 - sine) / (1.0 + sine), k0 = seeding_k0(scene, body);
+    if (k0 < active * (1.0 - 1e-9) || k0 > 1.0 / active * (1.0 + 1e-9))
+        scene_warn(reader, &here, "k0_yield",
+                   "k0 = %.3g is outside of the active and passive limits %.3g and %.3g of the "
+                   "friction angle: without enough cohesion the first step returns it to yield",
+                   k0, active, 1.0 / active);
+}
+
+static void check_courant(struct scene_reader *reader)
+{
+    const struct talus_solver_options *solver = &reader->scene->solver;
+    struct scene_path parent = {.key = "solver"};
+    struct scene_path here = {.parent = &parent, .key = "courant"};
+    if (solver->courant > 1.0 && !solver->allow_unstable)
+        scene_mistake(reader, &here, "over_critical", NULL, NULL,
+                      "%g times the critical step needs \"allow_unstable\": true", solver->courant);
+}
+
+void scene_check(struct scene_reader *reader)
+{
+    const struct talus_scene *scene = reader->scene;
+    if (reader->out_of_memory)
+        return;
+    check_bodies(reader);
+    if (!scene_issues_under(reader->issues, "/solver"))
+        check_courant(reader);
+    if (reader->issues->count > 0)
+        return;
+    for (size_t index = 0; index < scene->body_count; index++) {
+        check_initial_stress(reader, index);
+        warn_of_k0(reader, index);
+    }
+    scene_check_boundaries(reader);
+}

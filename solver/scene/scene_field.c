@@ -1,0 +1,294 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* Reads an object by its table: keys, alternatives, then each field by its kind. */
+#include "scene/scene_field.h"
+
+#include <string.h>
+
+enum { KEY_MAX = 128 };
+
+static const struct scene_field *find_field(const struct scene_field *table, const char *key)
+{
+    for (; table->key != NULL; table++) {
+        if (strcmp(table->key, key) == 0)
+            return table;
+    }
+    return NULL;
+}
+
+static void check_keys(struct scene_reader *reader, const struct scene_path *path,
+                       const struct scene_field *table, const json_t *object)
+{
+    const char *words[KEY_MAX + 1] = {NULL};
+    size_t count = 0;
+    for (const struct scene_field *field = table; field->key != NULL; field++) {
+        if (!field->unsupported && count < KEY_MAX)
+            words[count++] = field->key;
+    }
+    const char *key;
+    json_t *value;
+    json_object_foreach((json_t *)object, key, value)
+    { /* the iterator does not write */
+        const struct scene_field *field = find_field(table, key);
+        struct scene_path here = {.parent = path, .key = key};
+        const char *nearest = field == NULL ? scene_suggest(key, words) : NULL;
+        if (nearest != NULL)
+            scene_mistake(reader, &here, "unknown_key", NULL, scene_word_list(words),
+                          "unknown key '%.60s': did you mean '%s'?", key, nearest);
+        else if (field == NULL)
+            scene_mistake(reader, &here, "unknown_key", NULL, scene_word_list(words),
+                          "unknown key '%.60s'", key);
+        else if (field->unsupported)
+            scene_mistake(reader, &here, "unsupported", value, NULL,
+                          "'%s' is not supported by this build", key);
+    }
+}
+
+static bool same_alternative(const struct scene_field *a, const struct scene_field *b)
+{
+    return a->alternative != NULL && b->alternative != NULL &&
+           strcmp(a->alternative, b->alternative) == 0;
+}
+
+/* True if another field of the same group of alternatives is given. */
+static bool other_is_given(const struct scene_field *table, const struct scene_field *field,
+                           const json_t *object)
+{
+    for (const struct scene_field *other = table; other->key != NULL; other++) {
+        if (other != field && same_alternative(field, other) &&
+            json_object_get(object, other->key) != NULL)
+            return true;
+    }
+    return false;
+}
+
+/* Checks the group of which `first` is the first field of the table. */
+static void check_group(struct scene_reader *reader, const struct scene_path *path,
+                        const struct scene_field *first, const json_t *object)
+{
+    const struct scene_field *given = NULL;
+    const char *words[KEY_MAX + 1] = {NULL};
+    size_t count = 0;
+    for (const struct scene_field *field = first; field->key != NULL; field++) {
+        if (!same_alternative(first, field))
+            continue;
+        if (!field->unsupported && count < KEY_MAX)
+            words[count++] = field->key;
+        if (json_object_get(object, field->key) == NULL)
+            continue;
+        struct scene_path here = {.parent = path, .key = field->key};
+        if (given != NULL)
+            scene_mistake(reader, &here, "contradiction", NULL, scene_word_list(words),
+                          "'%s' and '%s' exclude each other", given->key, field->key);
+        given = field;
+    }
+    struct scene_path here = {.parent = path, .key = first->key};
+    if (given == NULL && first->required)
+        scene_mistake(reader, &here, "required", NULL, scene_word_list(words),
+                      "one of these keys is required (%s)", first->alternative);
+}
+
+static void check_alternatives(struct scene_reader *reader, const struct scene_path *path,
+                               const struct scene_field *table, const json_t *object)
+{
+    for (const struct scene_field *field = table; field->key != NULL; field++) {
+        bool first = field->alternative != NULL;
+        for (const struct scene_field *before = table; before < field && first; before++)
+            first = !same_alternative(before, field);
+        if (first)
+            check_group(reader, path, field, object);
+    }
+}
+
+static void store(const struct scene_field *field, void *target, const void *value, size_t bytes)
+{
+    if (field->offset != SCENE_NOWHERE)
+        memcpy((char *)target + field->offset, value, bytes);
+}
+
+/* Stores an index or truth value the way the field wants it. */
+static void store_whole(const struct scene_field *field, void *target, int value)
+{
+    size_t size = (size_t)value;
+    double number = value;
+    bool truth = value != 0;
+    if (field->storage == SCENE_STORE_SIZE)
+        store(field, target, &size, sizeof size);
+    else if (field->storage == SCENE_STORE_DOUBLE)
+        store(field, target, &number, sizeof number);
+    else if (field->kind == SCENE_BOOLEAN || field->storage == SCENE_STORE_BOOLEAN)
+        store(field, target, &truth, sizeof truth);
+    else
+        store(field, target, &value, sizeof value);
+}
+
+struct place { /* one field of one object */
+    struct scene_reader *reader;
+    struct scene_path path;
+    const struct scene_field *field;
+    const json_t *given;
+    bool use_default; /* not given, nor is an alternative */
+    void *target;
+    json_t *effective;
+};
+
+static void read_number(const struct place *place)
+{
+    const struct scene_field *field = place->field;
+    double value = NAN;
+    bool known = place->given != NULL;
+    if (known) {
+        known = scene_number_read(place->reader, &place->path, field, place->given, &value);
+    } else if (place->use_default) {
+        value = field->default_value;
+        known = !isnan(value);
+    }
+    store(field, place->target, &value, sizeof value);
+    if (!known)
+        return;
+    json_t *effective = field->word != NULL && value == field->word_value
+                            ? json_string(field->word)
+                            : (field->whole ? json_integer((json_int_t)value) : json_real(value));
+    scene_put(place->reader, place->effective, field->key, effective);
+}
+
+static void read_boolean(const struct place *place)
+{
+    const struct scene_field *field = place->field;
+    int value = field->default_value == 1.0;
+    if (place->given != NULL && !json_is_boolean(place->given)) {
+        scene_mistake(place->reader, &place->path, "type", place->given, json_string("boolean"),
+                      "expected true or false, not %s", scene_type_word(place->given));
+        return;
+    }
+    if (place->given != NULL)
+        value = json_is_true(place->given);
+    store_whole(field, place->target, value);
+    scene_put(place->reader, place->effective, field->key, json_boolean(value));
+}
+
+static void read_choice(const struct place *place)
+{
+    const struct scene_field *field = place->field;
+    int value = isnan(field->default_value) ? -1 : (int)field->default_value;
+    if (place->given != NULL)
+        value = scene_choice_read(place->reader, &place->path, place->given, field->choices,
+                                  field->lacking);
+    if (value < 0)
+        return;
+    store_whole(field, place->target, value);
+    scene_put(place->reader, place->effective, field->key, json_string(field->choices[value]));
+}
+
+static bool is_name(const char *text)
+{
+    enum { NAME_MAX_LENGTH = 48 };
+    size_t length = strlen(text);
+    return length > 0 && length <= NAME_MAX_LENGTH &&
+           strspn(text, "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-") ==
+               length;
+}
+
+static void read_text(const struct place *place)
+{
+    enum { TEXT_MAX_LENGTH = 1000 };
+    const struct scene_field *field = place->field;
+    const char *text = json_string_value(place->given);
+    if (place->given == NULL)
+        return;
+    if (text == NULL) {
+        scene_mistake(place->reader, &place->path, "type", place->given, json_string("string"),
+                      "expected a string, not %s", scene_type_word(place->given));
+    } else if (field->kind == SCENE_NAME && !is_name(text)) {
+        scene_mistake(place->reader, &place->path, "name", place->given, NULL,
+                      "a name has 1 to 48 letters, digits, '_' and '-'");
+    } else if (strlen(text) > TEXT_MAX_LENGTH) {
+        scene_mistake(place->reader, &place->path, "range", NULL, NULL,
+                      "a text has at most %d bytes", TEXT_MAX_LENGTH);
+    } else {
+        store(field, place->target, &text, sizeof text);
+        scene_put(place->reader, place->effective, field->key, json_string(text));
+    }
+}
+
+static void read_vector(const struct place *place)
+{
+    const struct scene_field *field = place->field;
+    double value[3] = {0.0, 0.0, 0.0};
+    json_t *effective = NULL;
+    if (place->given != NULL) {
+        if (!scene_vector_read(place->reader, &place->path, field, place->given, value, &effective))
+            return;
+    } else if (place->use_default && (!isnan(field->default_value) || field->open)) {
+        effective = json_array();
+        for (size_t k = 0; k < place->reader->axis_count; k++) {
+            value[k] = field->default_value;
+            if (json_array_append_new(effective,
+                                      isfinite(value[k]) ? json_real(value[k]) : json_null()) != 0)
+                place->reader->out_of_memory = true;
+        }
+    } else {
+        return;
+    }
+    store(field, place->target, value, sizeof value);
+    scene_put(place->reader, place->effective, field->key, effective);
+}
+
+static void read_object(const struct place *place)
+{
+    const struct scene_field *field = place->field;
+    if (place->given == NULL && field->alternative != NULL)
+        return;
+    json_t *inner = json_object();
+    scene_fields_read(place->reader, &place->path, field->fields, place->given, place->target,
+                      inner);
+    scene_put(place->reader, place->effective, field->key, inner);
+}
+
+static void read_custom(const struct place *place)
+{
+    if (place->given != NULL || place->field->alternative == NULL)
+        place->field->read(place->reader, &place->path, place->given, place->target,
+                           place->effective);
+}
+
+static void read_field(const struct place *place)
+{
+    static void (*const readers[])(const struct place *) = {
+        [SCENE_NUMBER] = read_number, [SCENE_BOOLEAN] = read_boolean, [SCENE_CHOICE] = read_choice,
+        [SCENE_TEXT] = read_text,     [SCENE_NAME] = read_text,       [SCENE_VECTOR] = read_vector,
+        [SCENE_OBJECT] = read_object, [SCENE_CUSTOM] = read_custom,
+    };
+    readers[place->field->kind](place);
+}
+
+void scene_fields_read(struct scene_reader *reader, const struct scene_path *path,
+                       const struct scene_field *table, const json_t *object, void *target,
+                       json_t *effective)
+{
+    if (object != NULL && !json_is_object(object)) {
+        scene_mistake(reader, path, "type", object, json_string("object"),
+                      "expected an object, not %s", scene_type_word(object));
+        return;
+    }
+    if (object != NULL)
+        check_keys(reader, path, table, object);
+    check_alternatives(reader, path, table, object);
+    for (const struct scene_field *field = table; field->key != NULL; field++) {
+        struct place place = {
+            .reader = reader,
+            .path = {.parent = path, .key = field->key},
+            .field = field,
+            .given = json_object_get(object, field->key),
+            .use_default = !other_is_given(table, field, object),
+            .target = target,
+            .effective = effective,
+        };
+        if (field->unsupported)
+            continue;
+        if (field->required && field->alternative == NULL && place.given == NULL)
+            scene_mistake(reader, &place.path, "required", NULL, NULL, "'%s' is required: %s",
+                          field->key, field->meaning);
+        else
+            read_field(&place);
+    }
+}
