@@ -30,6 +30,8 @@ struct material_batch {
                                             Volumetric models (see `volumetric`) use strain[0] as
                                             the volumetric strain ln J (trace at small strain) */
     const double *rate[SYM3_COMPONENTS]; /* in: symmetric velocity gradient d [1/s] if needs_rate */
+    const double *spin[3];               /* in: (L - L^T)/2, components xy, yz, xz [1/s], if
+                                            needs_spin at finite strain; else NULL */
     const double *volume_ratio;          /* in: J = V/V0 [1] (1 at small strain) */
     double *stress[SYM3_COMPONENTS];     /* out: Kirchhoff stress (finite) or Cauchy (small) [Pa] */
     double *const *history;              /* in/out: [state_count] arrays of the model's own state */
@@ -56,6 +58,7 @@ struct material {
     bool own_elasticity; /* the table itself holds what the model knows of elasticity (fluids) */
     bool volumetric;     /* stores ln J only, in strain[0]; no deviatoric strain */
     bool needs_rate;     /* wants batch->rate */
+    bool needs_spin;     /* wants batch->spin at finite strain: its history holds a tensor */
     bool plastic;        /* may change the trial strain */
     size_t state_count;  /* history variables per particle; only these are stored */
     const char *const *state_names; /* [state_count] */
@@ -75,7 +78,8 @@ struct material {
                        double *history);
     /* Trial strain -> stress, elastic strain, history, dissipation, for the whole batch. */
     void (*update_stress)(const void *constants, const struct material_batch *batch);
-    /* Strain energy per initial volume [J/m^3] into energy[count]; strain as stored (elastic). */
+    /* Strain energy per initial volume [J/m^3] into energy[count], out of strain as stored
+     * (elastic) and history; reads nothing else of the batch. */
     void (*strain_energy)(const void *constants, const struct material_batch *batch,
                           double *energy);
     /* Elastic strain that gives a stress (initial states): K, G law; fluids: strain[0] = ln J. */

@@ -1,34 +1,42 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Drives one material point along a path with mixed strain and stress control:
- * what `talus-worker point` and the material tests run. */
+/* Drives one material point along a path with mixed strain and stress control: what `talus-worker
+ * point` and the material tests run. */
 #ifndef TALUS_MATERIAL_POINT_H
 #define TALUS_MATERIAL_POINT_H
 
 #include "materials/material.h"
 
+/* Values are reached at the end of the segment, linearly from where it starts; a component given in
+ * neither keeps its strain. */
 struct material_point_segment {
     bool strain_given[SYM3_COMPONENTS];
     bool stress_given[SYM3_COMPONENTS];
-    double strain[SYM3_COMPONENTS]; /* [1] reached at the end of the segment, linearly */
-    double stress[SYM3_COMPONENTS]; /* [Pa] Cauchy */
-    bool gradient_given;
-    double gradient[9]; /* F at the end, row-major (finite strain) */
-    size_t step_count;
+    double strain[SYM3_COMPONENTS]; /* total strain [1] */
+    double stress[SYM3_COMPONENTS]; /* Cauchy [Pa] */
+    bool gradient_given;            /* finite strain only; excludes all of the above */
+    double gradient[9];             /* F, row-major */
+    double duration;                /* [s], above 0; counts for viscous models only */
+    size_t step_count;              /* at least 1 */
 };
 
-struct material_point_step { /* what one step gives to `emit` */
-    size_t step;
-    double strain[SYM3_COMPONENTS]; /* total strain; finite: integrated stretching without spin */
+struct material_point_step {        /* what one step gives to `emit` */
+    size_t step;                    /* over the whole path; 0: the initial state */
+    double strain[SYM3_COMPONENTS]; /* total strain; finite: integrated stretching */
     double stress[SYM3_COMPONENTS]; /* Cauchy [Pa] */
     double p, q;                    /* mean stress, sqrt(3/2)|s| [Pa] */
     double volumetric_strain;
-    double plastic_strain; /* accumulated norm */
+    double plastic_strain; /* accumulated norm of the increments */
+    double dissipation;    /* accumulated, per initial volume [J/m^3] */
+    double strain_energy;  /* per initial volume [J/m^3] */
     const double *history; /* [state_count] */
-    int iterations;        /* of the mixed control */
+    int iterations;        /* of the mixed control; 0 where only strain is given */
 };
 
-/* Runs the path; emit() is called after each step (and once at the start, step 0).
- * TALUS_UNSTABLE if the stress iteration does not converge (pointer "/path/N"). */
+/* Runs the path; emit() is called once for the initial state (step 0) and after each step; what it
+ * is given lives until it returns. At finite strain a segment without `gradient` deforms without
+ * spin: F <- exp(strain increment) F. `values` have passed the model's check.
+ * TALUS_UNSTABLE if the stress control does not converge (pointer "/path/N"), TALUS_INVALID for a
+ * gradient with det F <= 0 (pointer "/path/N/deformation_gradient"), TALUS_MEMORY. */
 TALUS_MUST_CHECK enum talus_status
 material_point_run(const struct material *material, const double *values, bool finite_strain,
                    const double initial_stress[SYM3_COMPONENTS],
