@@ -168,8 +168,8 @@ static const struct material *read_model(struct scene_reader *reader, const stru
     return index < 0 ? NULL : material_table[index];
 }
 
-static void read_material(struct scene_reader *reader, const struct scene_path *path,
-                          const json_t *given, struct talus_material *entry, json_t *effective)
+void scene_material_read(struct scene_reader *reader, const struct scene_path *path,
+                         const json_t *given, struct talus_material *entry, json_t *effective)
 {
     const struct material *model = read_model(reader, path, given);
     entry->name = scene_copy_text(reader, path->key);
@@ -220,7 +220,8 @@ void scene_materials_read(struct scene_reader *reader, const struct scene_path *
         json_t *entry = json_object();
         if (strlen(name) == 0 || strlen(name) > 48)
             scene_mistake(reader, &here, "name", NULL, NULL, "a name has 1 to 48 bytes");
-        read_material(reader, &here, value, &scene->materials[scene->material_count++], entry);
+        scene_material_read(reader, &here, value, &scene->materials[scene->material_count++],
+                            entry);
         scene_put(reader, inner, name, entry);
     }
 }

@@ -69,6 +69,10 @@ int scene_probe_find(struct scene_reader *reader, const struct scene_path *path,
 json_t *scene_list_schema(const struct scene_field *table, size_t minimum);
 
 /* ---- materials ---- */
+/* Reads one material, named after the key of its place, into a zeroed entry that owns its name and
+ * values even after mistakes; `effective` may be NULL. */
+void scene_material_read(struct scene_reader *reader, const struct scene_path *path,
+                         const json_t *given, struct talus_material *entry, json_t *effective);
 /* [{"model","summary","reference","parameters":[...]}] */
 json_t *scene_materials_describe(void);
 
