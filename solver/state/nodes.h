@@ -1,0 +1,42 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* Node values, in blocks of LANE_COUNT nodes side by side along x: node l of a block is the lower
+ * corner of cell l of the particle block at the same place. All quantities of a block lie together.
+ */
+#ifndef TALUS_NODES_H
+#define TALUS_NODES_H
+
+#include "state/block_map.h"
+#include "state/lanes.h"
+
+#include <stddef.h>
+#include <stdint.h>
+
+/* Components of a node; each array of a quantity has `axis_count` components but for the mass. */
+struct node_layout {
+    uint32_t mass;       /* [kg] of the present particle positions */
+    uint32_t force;      /* [N] internal force of the present particle positions */
+    uint32_t momentum;   /* [kg m/s] scattered; the node update turns it into velocity [m/s] */
+    uint32_t kick;       /* [m/s] velocity increment that the particles get in the first pass */
+    uint32_t correction; /* [m/s] velocity increment that they get in the second pass */
+    uint32_t component_count;
+};
+
+struct node_blocks {
+    struct node_layout layout;
+    size_t count, capacity;
+    int32_t (*place)[3]; /* [count] first node: x (multiple of LANE_COUNT), y, z */
+    double *values;      /* [count][component_count][LANE_COUNT], aligned to 64 bytes */
+    struct block_map map;
+};
+
+void node_layout_init(struct node_layout *layout, size_t axis_count);
+void node_blocks_release(struct node_blocks *nodes);
+/* Index of the node block at a place, made (zeroed) if missing; BLOCK_NONE when memory ran out. */
+uint32_t node_blocks_require(struct node_blocks *nodes, int32_t x, int32_t y, int32_t z);
+
+static inline double *node_values(const struct node_blocks *nodes, size_t block, uint32_t component)
+{
+    return nodes->values + (block * nodes->layout.component_count + component) * LANE_COUNT;
+}
+
+#endif

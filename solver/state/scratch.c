@@ -1,0 +1,38 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+#include "state/scratch.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+/* Everything behind `memory` is a pointer to an array of `capacity` doubles. */
+enum {
+    ARRAY_COUNT =
+        (sizeof(struct block_scratch) - offsetof(struct block_scratch, gradient)) / sizeof(double *)
+};
+
+int block_scratch_reserve(struct block_scratch *scratch, size_t slots)
+{
+    if (slots <= scratch->capacity)
+        return 0;
+    /* An odd number of cache lines between arrays, so that they do not share cache sets. */
+    const size_t capacity = ((slots + slots / 2) / 16 * 2 + 3) * 8;
+    double *memory = aligned_alloc(64, ARRAY_COUNT * capacity * sizeof(double));
+    if (memory == NULL)
+        return -1;
+    memset(memory, 0, ARRAY_COUNT * capacity * sizeof(double));
+    free(scratch->memory);
+    scratch->memory = memory;
+    scratch->capacity = capacity;
+    double **arrays = scratch->gradient;
+    for (size_t index = 0; index < ARRAY_COUNT; index++) {
+        double *array = memory + index * capacity;
+        memcpy((char *)arrays + index * sizeof array, &array, sizeof array);
+    }
+    return 0;
+}
+
+void block_scratch_release(struct block_scratch *scratch)
+{
+    free(scratch->memory);
+    memset(scratch, 0, sizeof *scratch);
+}

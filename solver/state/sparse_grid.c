@@ -1,0 +1,232 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+#include "state/sparse_grid.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+void sparse_grid_release(struct sparse_grid *grid)
+{
+    for (size_t index = 0; index < grid->block_count; index++)
+        particle_block_release(&grid->blocks[index]);
+    free(grid->blocks);
+    free(grid->tiles);
+    free(grid->tile_blocks);
+    block_map_release(&grid->map);
+    node_blocks_release(&grid->nodes);
+    memset(grid, 0, sizeof *grid);
+}
+
+static int connect_nodes(struct sparse_grid *grid, struct particle_block *block)
+{
+    for (int corner = 0; corner < 1 << grid->domain.axis_count; corner++) {
+        const uint32_t nodes =
+            node_blocks_require(&grid->nodes, block->cell[0] + (corner & 1 ? LANE_COUNT : 0),
+                                block->cell[1] + (corner >> 1 & 1), block->cell[2] + (corner >> 2));
+        if (nodes == BLOCK_NONE)
+            return -1;
+        block->nodes[corner] = nodes;
+    }
+    return 0;
+}
+
+uint32_t sparse_grid_require_block(struct sparse_grid *grid, const int32_t cell[3])
+{
+    const uint64_t key = block_key(cell[0] / LANE_COUNT, cell[1], cell[2]);
+    const uint32_t found = block_map_find(&grid->map, key);
+    if (found != BLOCK_NONE)
+        return found;
+    if (grid->block_count == grid->block_capacity) {
+        const size_t capacity = grid->block_capacity == 0 ? 64 : 2 * grid->block_capacity;
+        struct particle_block *blocks = realloc(grid->blocks, capacity * sizeof *blocks);
+        if (blocks == NULL)
+            return BLOCK_NONE;
+        grid->blocks = blocks;
+        grid->block_capacity = capacity;
+    }
+    struct particle_block *block = &grid->blocks[grid->block_count];
+    memset(block, 0, sizeof *block);
+    block->cell[0] = cell[0] / LANE_COUNT * LANE_COUNT;
+    block->cell[1] = cell[1];
+    block->cell[2] = cell[2];
+    if (connect_nodes(grid, block) != 0 ||
+        block_map_insert(&grid->map, key, (uint32_t)grid->block_count) != 0)
+        return BLOCK_NONE;
+    grid->tiles_stale = true;
+    return (uint32_t)grid->block_count++;
+}
+
+struct tile_key {
+    uint32_t colour, x, y, block;
+};
+
+static struct tile_key tile_key_of(const struct sparse_grid *grid, size_t index)
+{
+    const uint32_t x = (uint32_t)grid->blocks[index].cell[0] / LANE_COUNT;
+    const uint32_t y = (uint32_t)grid->blocks[index].cell[1] / TILE_ROWS;
+    return (struct tile_key){(x & 1) | (y & 1) << 1, x, y, (uint32_t)index};
+}
+
+static int compare_tile_keys(const void *left, const void *right)
+{
+    const struct tile_key *a = left, *b = right;
+    if (a->colour != b->colour)
+        return a->colour < b->colour ? -1 : 1;
+    if (a->y != b->y)
+        return a->y < b->y ? -1 : 1;
+    if (a->x != b->x)
+        return a->x < b->x ? -1 : 1;
+    return a->block < b->block ? -1 : 1;
+}
+
+static int reserve_tiles(struct sparse_grid *grid)
+{
+    if (grid->block_count <= grid->tile_block_capacity)
+        return 0;
+    const size_t capacity = grid->block_capacity;
+    uint32_t *tile_blocks = realloc(grid->tile_blocks, capacity * sizeof *tile_blocks);
+    if (tile_blocks == NULL)
+        return -1;
+    grid->tile_blocks = tile_blocks;
+    struct tile *tiles = realloc(grid->tiles, capacity * sizeof *tiles);
+    if (tiles == NULL)
+        return -1;
+    grid->tiles = tiles;
+    grid->tile_block_capacity = capacity;
+    return 0;
+}
+
+static void cut_tiles(struct sparse_grid *grid, const struct tile_key *keys)
+{
+    grid->tile_count = 0;
+    size_t colour = 0;
+    for (size_t index = 0; index < grid->block_count; index++) {
+        const struct tile_key *key = &keys[index];
+        grid->tile_blocks[index] = key->block;
+        while (colour <= key->colour)
+            grid->colour_begin[colour++] = grid->tile_count;
+        const bool starts = index == 0 || key->colour != keys[index - 1].colour ||
+                            key->x != keys[index - 1].x || key->y != keys[index - 1].y;
+        if (starts)
+            grid->tiles[grid->tile_count++] = (struct tile){.begin = index};
+        grid->tiles[grid->tile_count - 1].end = index + 1;
+    }
+    while (colour <= TILE_COLOURS)
+        grid->colour_begin[colour++] = grid->tile_count;
+}
+
+int sparse_grid_update_tiles(struct sparse_grid *grid)
+{
+    if (!grid->tiles_stale)
+        return 0;
+    struct tile_key *keys = malloc((grid->block_count + 1) * sizeof *keys);
+    if (keys == NULL || reserve_tiles(grid) != 0) {
+        free(keys);
+        return -1;
+    }
+    for (size_t index = 0; index < grid->block_count; index++)
+        keys[index] = tile_key_of(grid, index);
+    qsort(keys, grid->block_count, sizeof *keys, compare_tile_keys);
+    cut_tiles(grid, keys);
+    free(keys);
+    grid->tiles_stale = false;
+    return 0;
+}
+
+static bool is_empty(const struct particle_block *block)
+{
+    return block->row_count == 0;
+}
+
+static void drop_empty_blocks(struct sparse_grid *grid)
+{
+    size_t kept = 0;
+    for (size_t index = 0; index < grid->block_count; index++) {
+        if (is_empty(&grid->blocks[index]))
+            particle_block_release(&grid->blocks[index]);
+        else
+            grid->blocks[kept++] = grid->blocks[index];
+    }
+    grid->block_count = kept;
+    grid->tiles_stale = true;
+}
+
+static int reconnect_blocks(struct sparse_grid *grid)
+{
+    for (size_t index = 0; index < grid->block_count; index++) {
+        struct particle_block *block = &grid->blocks[index];
+        const uint64_t key = block_key(block->cell[0] / LANE_COUNT, block->cell[1], block->cell[2]);
+        if (connect_nodes(grid, block) != 0 ||
+            block_map_insert(&grid->map, key, (uint32_t)index) != 0)
+            return -1;
+    }
+    return 0;
+}
+
+int sparse_grid_purge(struct sparse_grid *grid)
+{
+    struct node_blocks old = grid->nodes;
+    memset(&grid->nodes, 0, sizeof grid->nodes);
+    grid->nodes.layout = old.layout;
+    block_map_clear(&grid->map);
+    drop_empty_blocks(grid);
+    const int status = reconnect_blocks(grid);
+    for (size_t index = 0; index < grid->nodes.count; index++) {
+        const int32_t *place = grid->nodes.place[index];
+        const uint32_t source =
+            block_map_find(&old.map, block_key(place[0] / LANE_COUNT, place[1], place[2]));
+        if (source != BLOCK_NONE)
+            memcpy(node_values(&grid->nodes, index, 0), node_values(&old, source, 0),
+                   old.layout.component_count * LANE_COUNT * sizeof(double));
+    }
+    node_blocks_release(&old);
+    return status;
+}
+
+uint32_t sparse_grid_insert(struct sparse_grid *grid, const int32_t cell[3],
+                            const struct particle_record *record, size_t *slot)
+{
+    const uint32_t index = sparse_grid_require_block(grid, cell);
+    if (index == BLOCK_NONE)
+        return BLOCK_NONE;
+    struct particle_block *block = &grid->blocks[index];
+    const uint32_t lane = (uint32_t)(cell[0] - block->cell[0]);
+    if (particle_block_reserve(&grid->layout, block, block->lane_count[lane] + 1) != 0)
+        return BLOCK_NONE;
+    *slot = particle_block_insert(&grid->layout, block, lane, record);
+    if (block->row_capacity > grid->row_max)
+        grid->row_max = block->row_capacity;
+    return index;
+}
+
+size_t sparse_grid_memory(const struct sparse_grid *grid)
+{
+    size_t bytes =
+        grid->block_capacity * sizeof *grid->blocks +
+        grid->nodes.capacity * (grid->nodes.layout.component_count * LANE_COUNT * sizeof(double) +
+                                sizeof *grid->nodes.place) +
+        (grid->map.capacity + grid->nodes.map.capacity) * 12 +
+        grid->tile_block_capacity * (sizeof *grid->tiles + sizeof *grid->tile_blocks);
+    for (size_t index = 0; index < grid->block_count; index++)
+        bytes += particle_chunk_bytes(&grid->layout, grid->blocks[index].row_capacity);
+    return bytes;
+}
+
+size_t sparse_grid_particle_count(const struct sparse_grid *grid)
+{
+    size_t count = 0;
+    for (size_t index = 0; index < grid->block_count; index++) {
+        for (size_t lane = 0; lane < LANE_COUNT; lane++)
+            count += grid->blocks[index].lane_count[lane];
+    }
+    return count;
+}
+
+size_t sparse_grid_active_cells(const struct sparse_grid *grid)
+{
+    size_t count = 0;
+    for (size_t index = 0; index < grid->block_count; index++) {
+        for (size_t lane = 0; lane < LANE_COUNT; lane++)
+            count += grid->blocks[index].lane_count[lane] > 0;
+    }
+    return count;
+}
