@@ -1,0 +1,96 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* The seam for boundary conditions: one file per condition, one line in boundaries.def.
+ *
+ * At a node a condition is a normal constraint (two-sided, or one-sided with `tension_release`)
+ * and the largest tangential impulse that it can transmit. Everything else - corners, impulses,
+ * reactions - is the same for all (contact.c, reaction.c). */
+#ifndef TALUS_BOUNDARY_H
+#define TALUS_BOUNDARY_H
+
+#include "base/parameter.h"
+#include "state/domain.h"
+#include "talus/scene.h"
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+struct boundary_condition {
+    const char *name, *reference, *summary;
+    const struct parameter *parameters; /* ends with key NULL */
+    bool eliminates;                    /* takes out the particles behind it; constrains no node */
+    /* Largest tangential impulse [N s] at a node that is pushed with `normal_impulse` >= 0. */
+    double (*tangential_limit)(double friction_coefficient, double normal_impulse);
+};
+
+extern const struct boundary_condition *const boundary_table[];
+extern const size_t boundary_count;
+const struct boundary_condition *boundary_find(const char *name);
+
+/* One face of one boundary, as the node update needs it. */
+struct wall_face {
+    const struct boundary_condition *condition;
+    double friction_coefficient;
+    double normal[3]; /* unit, into the material */
+    enum talus_wall wall;
+    bool release;
+    double tension_force; /* [N] */
+    uint16_t boundary_index;
+    int8_t face_index; /* -1: inside of a box, where nodes are held */
+};
+
+/* All faces of a scene, and the boundaries snapped to grid lines. */
+struct wall_set {
+    size_t axis_count;
+    struct wall_face *faces; /* owned */
+    size_t face_count;
+    struct wall_shape *shapes; /* [boundary_count] owned */
+    size_t boundary_count;
+    double area_scale; /* full tributary area of an interior node is cell volume / cell along the
+                          normal */
+};
+
+/* Geometry of one boundary on the grid. */
+struct wall_shape {
+    enum talus_boundary_shape kind;
+    bool eliminates;
+    bool source_rule; /* contact area h^2 a node */
+    int axis;         /* axis-aligned plane or face: the axis of the normal; else -1 */
+    int32_t line;     /* its grid line */
+    bool lower;       /* the normal points to larger coordinates */
+    int32_t box_low[3], box_high[3];
+    double point[3], normal[3], axis_1[3], axis_2[3], size[2];
+    double box_min[3], box_max[3];
+    size_t first_face; /* into wall_set.faces; a box has its interior after its faces */
+    bool face_exists[6];
+};
+
+enum { NODE_FACE_MAX = 8 };
+/* Faces that act on one node. */
+struct node_faces {
+    size_t count;
+    uint16_t face[NODE_FACE_MAX];
+    double area[NODE_FACE_MAX]; /* tributary area of the node on that face */
+};
+
+/* 0, or -1 when memory ran out. */
+int wall_set_create(struct wall_set *walls, const struct talus_scene *scene,
+                    const struct domain *domain);
+void wall_set_release(struct wall_set *walls);
+
+/* Which faces act on node (i, j, k). */
+void wall_set_node_faces(const struct wall_set *walls, const struct domain *domain,
+                         const int32_t node[3], struct node_faces *faces);
+
+/* True if a particle at `position` is behind an eliminating boundary. */
+bool wall_set_eliminates(const struct wall_set *walls, const double position[3]);
+/* True if some point of the box [low, high] may be behind one. */
+bool wall_set_may_eliminate(const struct wall_set *walls, const double low[3],
+                            const double high[3]);
+
+/* Distance of a point from a boundary's surface [m], for probes "on" it (a box: from its outside).
+ */
+double wall_set_distance(const struct wall_set *walls, size_t boundary_index,
+                         const double position[3]);
+
+#endif
