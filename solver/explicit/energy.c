@@ -1,0 +1,117 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* The energy and momentum of the present state. Looked at, never changed. */
+#include "explicit/kinematics.h"
+#include "explicit/material_stage.h"
+#include "explicit/run.h"
+
+#include <math.h>
+#include <omp.h>
+#include <string.h>
+
+static void measure_block(const struct run *run, const struct particle_block *block,
+                          struct block_scratch *scratch, struct tile_sums *sums)
+{
+    const struct domain *domain = &run->grid.domain;
+    const struct particle_layout *layout = &run->grid.layout;
+    const size_t count = (size_t)block->row_count * LANE_COUNT;
+    double *energy = scratch->dissipation;
+    if (count == 0)
+        return;
+    kinematics_load(run, block, scratch);
+    material_stage_energy(run, block, scratch, energy);
+    const double *mass = particle_values(layout, block, PARTICLE_MASS, 0);
+    for (size_t i = 0; i < count; i++)
+        sums->strain += scratch->reference_volume[i] * energy[i];
+    for (uint32_t axis = 0; axis < domain->axis_count; axis++) {
+        const double *velocity = particle_values(layout, block, PARTICLE_VELOCITY, axis);
+        const double *position = particle_values(layout, block, PARTICLE_POSITION, axis);
+        const double gravity = run->scene.gravity[axis];
+        for (size_t i = 0; i < count; i++) {
+            const int32_t cell = block->cell[axis] + (axis == 0 ? (int32_t)(i % LANE_COUNT) : 0);
+            sums->kinetic += 0.5 * mass[i] * velocity[i] * velocity[i];
+            sums->potential -= mass[i] * gravity * domain_position(domain, axis, cell, position[i]);
+        }
+    }
+}
+
+void run_measure_energy(struct run *run)
+{
+#pragma omp parallel num_threads(run->threads) if (run->threads > 1)
+    {
+        struct block_scratch *scratch = &run->scratch[omp_get_thread_num()];
+#pragma omp for schedule(dynamic, 1)
+        for (size_t index = 0; index < run->grid.tile_count; index++) {
+            const struct tile *tile = &run->grid.tiles[index];
+            struct tile_sums *sums = &run->tile_sums[index];
+            sums->kinetic = sums->strain = sums->potential = 0;
+            for (size_t entry = tile->begin; entry < tile->end; entry++)
+                measure_block(run, &run->grid.blocks[run->grid.tile_blocks[entry]], scratch, sums);
+        }
+    }
+    run->energy.kinetic = run->energy.strain = run->energy.potential = 0;
+    for (size_t index = 0; index < run->grid.tile_count; index++) {
+        run->energy.kinetic += run->tile_sums[index].kinetic;
+        run->energy.strain += run->tile_sums[index].strain;
+        run->energy.potential += run->tile_sums[index].potential;
+    }
+}
+
+double run_numerical_loss(const struct run *run)
+{
+    const struct run_energy *energy = &run->energy;
+    return run->audit.initial_energy - (energy->kinetic + energy->strain + energy->potential) -
+           (energy->plastic + energy->viscous + energy->damping + energy->wall) -
+           energy->eliminated;
+}
+
+double run_energy_turnover(const struct run *run)
+{
+    const struct run_energy *energy = &run->energy;
+    return run->audit.initial_stored + energy->kinetic + energy->strain + energy->plastic +
+           energy->viscous + energy->damping + energy->wall + fabs(energy->eliminated) +
+           fabs(run->audit.initial_potential - energy->potential);
+}
+
+void run_measure_momentum(const struct run *run, double momentum[3], double *mass)
+{
+    *mass = 0;
+    memset(momentum, 0, 3 * sizeof *momentum);
+    for (size_t index = 0; index < run->grid.block_count; index++) {
+        const struct particle_block *block = &run->grid.blocks[index];
+        const size_t count = (size_t)block->row_count * LANE_COUNT;
+        const double *masses = particle_values(&run->grid.layout, block, PARTICLE_MASS, 0);
+        for (size_t i = 0; i < count; i++)
+            *mass += masses[i];
+        for (uint32_t axis = 0; axis < run->grid.domain.axis_count; axis++) {
+            const double *velocity =
+                particle_values(&run->grid.layout, block, PARTICLE_VELOCITY, axis);
+            for (size_t i = 0; i < count; i++)
+                momentum[axis] += masses[i] * velocity[i];
+        }
+    }
+}
+
+void run_book_eliminated_energy(struct run *run, const struct particle_record *record,
+                                const double position[3])
+{
+    /* A block of one row with this particle in its first lane, through the same code. */
+    const struct particle_layout *layout = &run->grid.layout;
+    _Alignas(64) double values[PARTICLE_MAX_DOUBLES * LANE_COUNT] = {0};
+    uint32_t ids[LANE_COUNT] = {record->id, PARTICLE_NONE, PARTICLE_NONE, PARTICLE_NONE};
+    uint16_t bodies[LANE_COUNT] = {record->body};
+    struct particle_block block = {.row_count = 1,
+                                   .row_capacity = 1,
+                                   .lane_count = {1},
+                                   .data = values,
+                                   .id = ids,
+                                   .body = layout->has_body ? bodies : NULL};
+    for (size_t component = 0; component < layout->double_count; component++)
+        values[component * LANE_COUNT] = record->values[component];
+    struct tile_sums sums = {0};
+    measure_block(run, &block, &run->scratch[0], &sums);
+    double potential = 0;
+    for (size_t axis = 0; axis < run->grid.domain.axis_count; axis++)
+        potential -= record->values[layout->first_component[PARTICLE_MASS]] *
+                     run->scene.gravity[axis] * position[axis];
+    run->energy.eliminated += sums.kinetic + sums.strain + potential;
+}

@@ -1,0 +1,23 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* From the velocity gradient to trial strains, one block at a time. */
+#ifndef TALUS_KINEMATICS_H
+#define TALUS_KINEMATICS_H
+
+#include "explicit/run.h"
+
+/* Reads scratch->gradient, writes stored (trial strain as it is stored), strain (for the
+ * materials), rate, volume_ratio, reference_volume, weight, divergence; multiplies the stored
+ * volumes, F and total strain. Returns the smallest det of 1 + dt L of the block's particles. */
+double kinematics_advance(struct run *run, struct particle_block *block,
+                          struct block_scratch *scratch, double time_step);
+
+/* Elastic strain of the materials -> stored form, for slots whose strain the material changed
+ * (plastic_strain > 0). */
+void kinematics_store(struct run *run, const struct particle_block *block,
+                      struct block_scratch *scratch);
+
+/* Stored form -> strain of the materials, without motion (energies, frames). */
+void kinematics_load(const struct run *run, const struct particle_block *block,
+                     struct block_scratch *scratch);
+
+#endif

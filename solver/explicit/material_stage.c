@@ -1,0 +1,231 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+#include "explicit/material_stage.h"
+
+#include "antilocking/anti_locking.h"
+#include "math/log1p_series.h"
+
+#include <string.h>
+
+/* Bit set of the materials with particles in the block. */
+static uint64_t materials_present(const struct run *run, const struct particle_block *block)
+{
+    if (block->body == NULL)
+        return (uint64_t)1 << run->body_material[0];
+    uint64_t present = 0;
+    const size_t count = (size_t)block->row_count * LANE_COUNT;
+    for (size_t slot = 0; slot < count; slot++) {
+        if (block->id[slot] != PARTICLE_NONE)
+            present |= (uint64_t)1 << run->body_material[block->body[slot]];
+    }
+    return present;
+}
+
+static bool is_single(uint64_t set)
+{
+    return (set & (set - 1)) == 0;
+}
+
+/* weight[slot] = mass where the slot belongs to the material, else 0. */
+static const double *weights_of(const struct run *run, const struct particle_block *block,
+                                struct block_scratch *scratch, size_t material, bool single)
+{
+    if (single)
+        return scratch->weight;
+    double *weight = scratch->compact_dissipation;
+    const size_t count = (size_t)block->row_count * LANE_COUNT;
+    for (size_t slot = 0; slot < count; slot++)
+        weight[slot] = material_of_slot(run, block, slot) == material ? scratch->weight[slot] : 0.0;
+    return weight;
+}
+
+/* Replaces the volumetric trial strain by its cell average: strain and stored form,
+ * b <- exp(2 shift / 3) b at finite strain (Mast 2013, eq. 4.40). */
+static void average_strain(const struct run *run, const struct material *model,
+                           struct block_scratch *scratch, size_t count, const double *weight)
+{
+    double *mean = scratch->compact_volume_ratio;
+    if (model->volumetric) {
+        cell_average(count, weight, scratch->strain[0]);
+        for (size_t i = 0; i < count; i++)
+            scratch->stored[0][i] = weight[i] > 0 ? scratch->strain[0][i] : scratch->stored[0][i];
+        return;
+    }
+    for (size_t i = 0; i < count; i++)
+        mean[i] = scratch->strain[0][i] + scratch->strain[1][i] + scratch->strain[2][i];
+    cell_average(count, weight, mean);
+    for (size_t i = 0; i < count; i++) {
+        const double trace = scratch->strain[0][i] + scratch->strain[1][i] + scratch->strain[2][i];
+        const double shift = weight[i] > 0 ? (mean[i] - trace) / 3.0 : 0.0;
+        const double stretch = 2.0 * shift;
+        const double grow =
+            run->finite_strain
+                ? (fabs(stretch) <= SERIES_LIMIT ? expm1_series(stretch) : expm1(stretch))
+                : 0.0;
+        const double add = run->finite_strain ? 0.5 * grow : shift;
+        for (size_t component = 0; component < 3; component++) {
+            scratch->strain[component][i] += shift;
+            scratch->stored[component][i] += grow * scratch->stored[component][i] + add;
+        }
+        for (size_t component = 3; component < run->strain_components; component++)
+            scratch->stored[component][i] += grow * scratch->stored[component][i];
+    }
+}
+
+/* Replaces the mean stress by its cell average. */
+static void average_stress(struct block_scratch *scratch, size_t count, const double *weight)
+{
+    double *mean = scratch->compact_volume_ratio;
+    for (size_t i = 0; i < count; i++)
+        mean[i] = (scratch->stress[0][i] + scratch->stress[1][i] + scratch->stress[2][i]) / 3.0;
+    cell_average(count, weight, mean);
+    for (size_t i = 0; i < count; i++) {
+        const double p =
+            (scratch->stress[0][i] + scratch->stress[1][i] + scratch->stress[2][i]) / 3.0;
+        const double shift = weight[i] > 0 ? mean[i] - p : 0.0;
+        for (size_t component = 0; component < 3; component++)
+            scratch->stress[component][i] += shift;
+    }
+}
+
+static void history_arrays(const struct run *run, const struct particle_block *block,
+                           double *history[SCRATCH_HISTORY_MAX])
+{
+    for (uint32_t index = 0; index < run->grid.layout.component_count[PARTICLE_HISTORY]; index++)
+        history[index] = particle_values(&run->grid.layout, block, PARTICLE_HISTORY, index);
+}
+
+static void update_single(const struct run *run, const struct particle_block *block,
+                          struct block_scratch *scratch, size_t material, double time_step)
+{
+    double *history[SCRATCH_HISTORY_MAX] = {NULL};
+    history_arrays(run, block, history);
+    struct material_batch batch = {.count = (size_t)block->row_count * LANE_COUNT,
+                                   .component_count = run->strain_components,
+                                   .time_step = time_step,
+                                   .volume_ratio = scratch->volume_ratio,
+                                   .history = history,
+                                   .plastic_strain = scratch->plastic_strain,
+                                   .dissipation = scratch->dissipation};
+    for (size_t component = 0; component < run->strain_components; component++) {
+        batch.strain[component] = scratch->strain[component];
+        batch.rate[component] = scratch->rate[component];
+        batch.stress[component] = scratch->stress[component];
+    }
+    run->materials[material].model->update_stress(run->materials[material].constants, &batch);
+}
+
+/* Compacts the slots of one material, runs it, and puts the results back. */
+static void update_compacted(const struct run *run, const struct particle_block *block,
+                             struct block_scratch *scratch, size_t material, double time_step)
+{
+    const size_t slot_count = (size_t)block->row_count * LANE_COUNT;
+    const size_t state_count = run->materials[material].model->state_count;
+    double *history[SCRATCH_HISTORY_MAX] = {NULL};
+    history_arrays(run, block, history);
+    struct material_batch batch = {.component_count = run->strain_components,
+                                   .time_step = time_step,
+                                   .volume_ratio = scratch->compact_volume_ratio,
+                                   .history = scratch->compact_history,
+                                   .plastic_strain = scratch->compact_plastic_strain,
+                                   .dissipation = scratch->compact_dissipation};
+    for (size_t component = 0; component < run->strain_components; component++) {
+        batch.strain[component] = scratch->compact_strain[component];
+        batch.rate[component] = scratch->compact_rate[component];
+        batch.stress[component] = scratch->compact_stress[component];
+    }
+    size_t used = 0;
+    for (size_t slot = 0; slot < slot_count; slot++) {
+        if (block->id[slot] == PARTICLE_NONE || material_of_slot(run, block, slot) != material)
+            continue;
+        for (size_t component = 0; component < run->strain_components; component++) {
+            scratch->compact_strain[component][used] = scratch->strain[component][slot];
+            scratch->compact_rate[component][used] = scratch->rate[component][slot];
+        }
+        for (size_t index = 0; index < state_count; index++)
+            scratch->compact_history[index][used] = history[index][slot];
+        scratch->compact_volume_ratio[used++] = scratch->volume_ratio[slot];
+    }
+    batch.count = (used + LANE_COUNT - 1) / LANE_COUNT * LANE_COUNT;
+    for (size_t empty = used; empty < batch.count; empty++) {
+        for (size_t component = 0; component < run->strain_components; component++)
+            scratch->compact_strain[component][empty] = scratch->compact_rate[component][empty] = 0;
+        for (size_t index = 0; index < state_count; index++)
+            scratch->compact_history[index][empty] = 0;
+        scratch->compact_volume_ratio[empty] = 1;
+    }
+    run->materials[material].model->update_stress(run->materials[material].constants, &batch);
+    used = 0;
+    for (size_t slot = 0; slot < slot_count; slot++) {
+        if (block->id[slot] == PARTICLE_NONE || material_of_slot(run, block, slot) != material)
+            continue;
+        for (size_t component = 0; component < run->strain_components; component++) {
+            scratch->strain[component][slot] = scratch->compact_strain[component][used];
+            scratch->stress[component][slot] = scratch->compact_stress[component][used];
+        }
+        for (size_t index = 0; index < state_count; index++)
+            history[index][slot] = scratch->compact_history[index][used];
+        scratch->plastic_strain[slot] = scratch->compact_plastic_strain[used];
+        scratch->dissipation[slot] = scratch->compact_dissipation[used++];
+    }
+}
+
+static void clear_results(const struct run *run, struct block_scratch *scratch, size_t count)
+{
+    for (size_t component = 0; component < run->strain_components; component++)
+        memset(scratch->stress[component], 0, count * sizeof(double));
+    memset(scratch->plastic_strain, 0, count * sizeof(double));
+    memset(scratch->dissipation, 0, count * sizeof(double));
+}
+
+void material_stage_run(struct run *run, const struct particle_block *block,
+                        struct block_scratch *scratch, double time_step)
+{
+    const size_t count = (size_t)block->row_count * LANE_COUNT;
+    const bool averages = run->scene.solver.anti_locking == TALUS_CONTROL_CELL;
+    const bool averages_stress =
+        averages && run->scene.solver.anti_locking_apply == TALUS_APPLY_STRAIN_AND_STRESS;
+    const uint64_t present = materials_present(run, block);
+    const bool single = is_single(present);
+    if (averages && run->scene.solver.viscous_damping > 0)
+        cell_average(count, scratch->weight, scratch->divergence);
+    if (!single)
+        clear_results(run, scratch, count);
+    for (size_t material = 0; material < run->scene.material_count; material++) {
+        if ((present >> material & 1) == 0)
+            continue;
+        const struct material *model = run->materials[material].model;
+        if (averages)
+            average_strain(run, model, scratch, count,
+                           weights_of(run, block, scratch, material, single));
+        if (single)
+            update_single(run, block, scratch, material, time_step);
+        else
+            update_compacted(run, block, scratch, material, time_step);
+        if (averages_stress)
+            average_stress(scratch, count, weights_of(run, block, scratch, material, single));
+    }
+}
+
+void material_stage_energy(const struct run *run, const struct particle_block *block,
+                           struct block_scratch *scratch, double *energy)
+{
+    const size_t count = (size_t)block->row_count * LANE_COUNT;
+    const uint64_t present = materials_present(run, block);
+    struct material_batch batch = {.count = count,
+                                   .component_count = run->strain_components,
+                                   .volume_ratio = scratch->volume_ratio};
+    for (size_t component = 0; component < run->strain_components; component++)
+        batch.strain[component] = scratch->strain[component];
+    memset(energy, 0, count * sizeof *energy);
+    for (size_t material = 0; material < run->scene.material_count; material++) {
+        if ((present >> material & 1) == 0)
+            continue;
+        double *part = scratch->compact_dissipation;
+        const struct run_material *entry = &run->materials[material];
+        entry->model->strain_energy(entry->constants, &batch, part);
+        for (size_t slot = 0; slot < count; slot++) {
+            if (block->id[slot] != PARTICLE_NONE && material_of_slot(run, block, slot) == material)
+                energy[slot] = part[slot];
+        }
+    }
+}

@@ -1,0 +1,24 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* Trial strain -> stress for one block: anti-locking and the materials of the block. */
+#ifndef TALUS_MATERIAL_STAGE_H
+#define TALUS_MATERIAL_STAGE_H
+
+#include "explicit/run.h"
+
+/* Reads the kinematics in scratch; writes strain, stress, plastic_strain, dissipation, the history
+ * of the particles, and the averaged volumetric parts into `stored`. */
+void material_stage_run(struct run *run, const struct particle_block *block,
+                        struct block_scratch *scratch, double time_step);
+
+/* Strain energy per initial volume of the strains in scratch into energy[slots]. */
+void material_stage_energy(const struct run *run, const struct particle_block *block,
+                           struct block_scratch *scratch, double *energy);
+
+/* The material of a slot. */
+static inline size_t material_of_slot(const struct run *run, const struct particle_block *block,
+                                      size_t slot)
+{
+    return run->body_material[block->body == NULL ? 0 : block->body[slot]];
+}
+
+#endif

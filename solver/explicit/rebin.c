@@ -1,0 +1,110 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* Particles that left their cell move to their new block and scatter there, one by one and in a
+ * fixed order: by tile, last slot first, so that the slots of the other records stay valid. */
+#include "explicit/run.h"
+#include "health/health.h"
+
+#include <math.h>
+#include <string.h>
+
+/* Cell and relative position after the move; false if the particle is outside of the grid. */
+static bool rebase(const struct run *run, struct particle_record *record, int32_t cell[3])
+{
+    const struct domain *domain = &run->grid.domain;
+    const uint32_t first = run->grid.layout.first_component[PARTICLE_POSITION];
+    bool inside = true;
+    for (size_t axis = 0; axis < domain->axis_count; axis++) {
+        double *position = &record->values[first + axis];
+        const double hop = fmin(fmax(floor(*position + 0.5), -2e9), 2e9);
+        if (!(hop + cell[axis] >= 0 && hop + cell[axis] < domain->cell_count[axis])) {
+            inside = false;
+            continue;
+        }
+        cell[axis] += (int32_t)hop;
+        *position -= hop;
+        /* Rounding may leave the particle a last bit beyond the edge of its cell. */
+        *position = fmin(fmax(*position, -0.5), 0.5);
+    }
+    return inside;
+}
+
+static void book_eliminated(struct run *run, const struct particle_record *record, bool outside)
+{
+    const struct particle_layout *layout = &run->grid.layout;
+    const double mass = record->values[layout->first_component[PARTICLE_MASS]];
+    run->audit.eliminated_mass += mass;
+    if (outside)
+        run->audit.outside_mass += mass;
+    for (uint32_t axis = 0; axis < run->grid.domain.axis_count; axis++)
+        run->audit.eliminated_momentum[axis] +=
+            mass * record->values[layout->first_component[PARTICLE_VELOCITY] + axis];
+}
+
+static enum talus_status move_record(struct run *run, const struct outbox_record *entry,
+                                     struct talus_error *error)
+{
+    struct particle_block *block = &run->grid.blocks[entry->block];
+    struct particle_record *record = &run->carried;
+    const size_t lane = entry->slot % LANE_COUNT;
+    int32_t cell[3] = {block->cell[0] + (int32_t)lane, block->cell[1], block->cell[2]};
+    const enum talus_status status = health_check_crosser(run, block, entry->slot, error);
+    if (status != TALUS_OK)
+        return status;
+    double position[3] = {0, 0, 0};
+    for (uint32_t axis = 0; axis < run->grid.domain.axis_count; axis++)
+        position[axis] = domain_position(
+            &run->grid.domain, axis, cell[axis],
+            particle_values(&run->grid.layout, block, PARTICLE_POSITION, axis)[entry->slot]);
+    particle_block_remove(&run->grid.layout, block, entry->slot, record);
+    const bool outside = !rebase(run, record, cell);
+    if (outside || entry->eliminated) {
+        run_book_eliminated_energy(run, record, position);
+        book_eliminated(run, record, !entry->eliminated);
+        if (entry->eliminated)
+            return TALUS_OK;
+        return health_check_outside(run, record, position, error);
+    }
+    size_t slot = 0;
+    const uint32_t target = sparse_grid_insert(&run->grid, cell, record, &slot);
+    if (target == BLOCK_NONE)
+        return talus_error_set(error, TALUS_MEMORY, "memory", "", "out of memory at step %llu",
+                               (unsigned long long)run->step);
+    const struct shape_context context = run_shape_context(run);
+    run->kernels->scatter_one(&context, &run->grid.blocks[target], slot, entry->force_stress,
+                              run->scene.solver.stress_update == TALUS_STRESS_LAST);
+    return TALUS_OK;
+}
+
+/* Drops empty blocks when they are more than a quarter. */
+static int purge_if_sparse(struct run *run)
+{
+    size_t empty = 0;
+    for (size_t index = 0; index < run->grid.block_count; index++)
+        empty += run->grid.blocks[index].row_count == 0;
+    if (4 * empty <= run->grid.block_count || run->grid.block_count < 16)
+        return 0;
+    if (sparse_grid_purge(&run->grid) != 0)
+        return -1;
+    run->wall_node_count = 0;
+    run->walled_block_count = 0;
+    return 0;
+}
+
+enum talus_status run_rebin(struct run *run, struct talus_error *error)
+{
+    for (size_t index = 0; index < run->grid.tile_count; index++) {
+        const struct tile *tile = &run->grid.tiles[index];
+        for (size_t entry = tile->outbox_count; entry-- > 0;) {
+            const enum talus_status status =
+                move_record(run, &run->outbox[tile->outbox_begin + entry], error);
+            if (status != TALUS_OK)
+                return status;
+        }
+    }
+    if (purge_if_sparse(run) != 0 ||
+        (run->grid.tiles_stale && (run_find_walls(run) != 0 || run_prepare_tiles(run) != 0)) ||
+        run_reserve_scratch(run) != 0)
+        return talus_error_set(error, TALUS_MEMORY, "memory", "", "out of memory at step %llu",
+                               (unsigned long long)run->step);
+    return TALUS_OK;
+}

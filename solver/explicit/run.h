@@ -1,0 +1,189 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* Everything a running explicit simulation holds, in the order in which a step uses it.
+ *
+ * One step of `modified_last` in its kick-drift form (Mast 2013, sec. 2.2.3, with the velocity that
+ * strains the material mapped back from the particles after their update):
+ *   kick nodes      dv_i = dt f_i / m_i, constrained components held back
+ *   first pass      v_p += sum N dv_i;  P_i = sum N m_p v_p
+ *   update nodes    v_i = contact(P_i / m_i + what was held back); correction c_i = v_i - P_i / m_i
+ *   second pass     v_p += sum N c_i; strain and move with v_i; stress; m_i and f_i at the new
+ *                   positions for the next step
+ *   re-bin          particles that left their cell
+ * and of `last`: update nodes from the P_i, m_i, f_i of the step before, then the second pass,
+ * which scatters P_i too. */
+#ifndef TALUS_RUN_H
+#define TALUS_RUN_H
+
+#include "boundaries/boundary.h"
+#include "materials/material.h"
+#include "shapes/shape.h"
+#include "state/scratch.h"
+#include "state/sparse_grid.h"
+#include "talus/scene.h"
+#include "talus/status.h"
+
+#include <stdbool.h>
+
+/* A model with its constants, ready for the kernels. */
+struct run_material {
+    const struct material *model;
+    void *constants;   /* owned */
+    double density;    /* reference density [kg/m^3] */
+    double wave_speed; /* [m/s] */
+    double bulk_speed; /* sqrt(K / rho) [m/s], for bulk damping */
+    double viscosity;  /* [Pa s] */
+};
+
+/* A particle that left its cell in the second pass, with what it must still give to the nodes. */
+struct outbox_record {
+    uint32_t block, slot;
+    bool eliminated; /* by a boundary */
+    double force_stress[6];
+};
+
+/* A node with boundary conditions. */
+struct wall_node {
+    uint32_t block;
+    uint8_t lane;
+    struct node_faces faces;
+    double position[3];
+    double impulse[3]; /* of the walls on the material in the last step [N s] */
+};
+
+/* Sums over one face, or boundary. Impulses and moments are of the material on the boundary. */
+struct wall_record {
+    double step_impulse[3], step_moment[3];         /* of the last step [N s], [N m s] */
+    double interval_impulse[3], interval_moment[3]; /* since the last sample */
+    double contact_area;                            /* [m^2] now */
+    double peak, peak_time, peak_force[3];          /* largest |force| of one step or window */
+    double window_impulse[3], window_time;          /* running mean over the peak window */
+};
+
+/* Fixed-size chunk of the ring that a running mean over `peak_window` needs. */
+struct peak_window {
+    size_t capacity, first, count;
+    double *entries; /* [capacity][4]: impulse, time step; owned */
+};
+
+/* What one tile adds up in the second pass; summed over the tiles in order. */
+struct tile_sums {
+    double speed_squared;                  /* largest [m^2/s^2] */
+    double least_jacobian;                 /* smallest det of an incremental deformation gradient */
+    double plastic_energy, viscous_energy; /* dissipated in the step [J] */
+    double kinetic, strain, potential;     /* filled by run_measure_energy [J] */
+};
+
+struct run_energy {
+    double kinetic, strain, potential;                  /* [J] now */
+    double plastic, viscous, damping, wall, eliminated; /* [J] accumulated */
+};
+
+struct run_audit {
+    double initial_mass, eliminated_mass; /* [kg] */
+    double outside_mass;                  /* [kg] the part of it that left the grid */
+    double initial_momentum[3];           /* [N s] */
+    double impulse[3];                    /* of gravity, walls and damping on the material */
+    double eliminated_momentum[3];
+    double exchanged;                                         /* sum of |impulses| */
+    double initial_energy, initial_potential, initial_stored; /* stored: kinetic + strain [J] */
+    double largest_growth; /* of energy beyond the books, relative to the turnover */
+};
+
+struct run {
+    struct talus_scene scene; /* own copy */
+    int threads;
+    struct sparse_grid grid;
+    struct run_material *materials; /* [scene.material_count] owned */
+    uint16_t *body_material;        /* [scene.body_count] owned */
+    bool finite_strain, any_volumetric, any_tensor, any_plastic, any_rate;
+    size_t strain_components; /* that the materials see: 3, 4 or 6 */
+    size_t
+        stored_components; /* of PARTICLE_STRAIN: the same, or 1 if all materials are volumetric */
+
+    const struct shape *shape;
+    const struct shape_kernels *kernels;
+
+    struct wall_set walls;
+    struct wall_node *wall_nodes; /* [wall_node_count] owned, in order of node blocks */
+    size_t wall_node_count, wall_node_capacity;
+    size_t walled_block_count; /* node blocks already looked at */
+    bool *block_walled;        /* [walled_block_count]: has wall nodes; owned */
+    size_t block_walled_capacity;
+    struct wall_record *faces;      /* [walls.face_count] owned */
+    struct wall_record *boundaries; /* [scene.boundary_count] owned */
+    struct peak_window *windows;    /* [face_count + boundary_count] owned */
+    double *wall_partials;          /* owned, see node_update.c */
+    size_t wall_partial_capacity;
+
+    struct block_scratch *scratch; /* [threads] owned */
+    struct outbox_record *outbox;  /* [initial particle count] owned; touched only where used */
+    struct tile_sums *tile_sums;   /* [tile_sums_capacity] owned */
+    size_t tile_sums_capacity;
+    struct particle_record carried; /* one particle on its way from block to block */
+    size_t initial_particle_count;
+
+    double time, time_step, critical_time_step, last_time_step, interval;
+    uint64_t step;
+    double largest_speed;     /* of particles, after the last step [m/s] */
+    double checked_speed;     /* when energy was last checked */
+    double mass_cutoff;       /* nodes lighter than this carry no motion [kg] */
+    double reference_density; /* smallest of the scene, for contact areas [kg/m^3] */
+    bool over_critical_warned, failed;
+    uint64_t warning_state;
+
+    struct run_energy energy;
+    struct run_audit audit;
+};
+
+static inline struct shape_context run_shape_context(struct run *run)
+{
+    struct shape_context context = {.particles = &run->grid.layout, .nodes = &run->grid.nodes};
+    for (size_t axis = 0; axis < 3; axis++)
+        context.inverse_cell[axis] = run->grid.domain.inverse_cell[axis];
+    return context;
+}
+
+/* Share of gravity that acts now: 1, or less during the force ramp. */
+double run_force_factor(const struct run *run);
+
+/* ---- node_update.c ---- */
+/* Finds the walls of node blocks that are new, and which blocks touch them. 0, or -1. */
+int run_find_walls(struct run *run);
+void run_kick_nodes(struct run *run);
+void run_update_nodes(struct run *run);
+
+/* ---- advance.c ---- */
+/* The second pass for one block, from gather to scatter; with `still` only stress and scatter. */
+void run_advance_block(struct run *run, struct block_scratch *scratch, uint32_t block_index,
+                       struct tile *tile, struct tile_sums *sums, bool still);
+
+/* ---- rebin.c ---- */
+/* Moves the particles of the outboxes to their new blocks. */
+TALUS_MUST_CHECK enum talus_status run_rebin(struct run *run, struct talus_error *error);
+
+/* Energy that a particle takes along when it is taken out. */
+void run_book_eliminated_energy(struct run *run, const struct particle_record *record,
+                                const double position[3]);
+
+/* ---- time_step.c ---- */
+/* Critical step now, from wave speed, velocity, viscosity and method. */
+double run_critical_time_step(const struct run *run, double speed);
+void run_choose_time_step(struct run *run);
+
+/* ---- step.c ---- */
+TALUS_MUST_CHECK enum talus_status run_take_step(struct run *run, struct talus_error *error);
+/* Sorts new blocks into tiles and makes room for what a step writes per tile. 0, or -1. */
+int run_prepare_tiles(struct run *run);
+int run_reserve_scratch(struct run *run);
+/* Mass and forces of the initial state. */
+TALUS_MUST_CHECK enum talus_status run_start(struct run *run, struct talus_error *error);
+
+/* ---- energy.c ---- */
+/* Kinetic, strain and potential energy of the present state into run->energy. */
+void run_measure_energy(struct run *run);
+/* Energy that the method itself has lost so far (negative: gained), and the turnover [J]. */
+double run_numerical_loss(const struct run *run);
+double run_energy_turnover(const struct run *run);
+void run_measure_momentum(const struct run *run, double momentum[3], double *mass);
+
+#endif

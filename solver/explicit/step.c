@@ -1,0 +1,151 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* One time step: the passes over tiles and nodes in their order. */
+#include "explicit/run.h"
+#include "health/health.h"
+
+#include <math.h>
+#include <omp.h>
+#include <stdlib.h>
+#include <string.h>
+
+int run_prepare_tiles(struct run *run)
+{
+    if (sparse_grid_update_tiles(&run->grid) != 0)
+        return -1;
+    if (run->grid.tile_count <= run->tile_sums_capacity)
+        return 0;
+    const size_t capacity = 2 * run->grid.tile_count;
+    struct tile_sums *sums = realloc(run->tile_sums, capacity * sizeof *sums);
+    if (sums == NULL)
+        return -1;
+    run->tile_sums = sums;
+    run->tile_sums_capacity = capacity;
+    return 0;
+}
+
+int run_reserve_scratch(struct run *run)
+{
+    for (int thread = 0; thread < run->threads; thread++) {
+        if (block_scratch_reserve(&run->scratch[thread], (size_t)run->grid.row_max * LANE_COUNT) !=
+            0)
+            return -1;
+    }
+    return 0;
+}
+
+/* The outbox of a tile can take all its particles. */
+static void partition_outbox(struct run *run)
+{
+    size_t next = 0;
+    for (size_t index = 0; index < run->grid.tile_count; index++) {
+        struct tile *tile = &run->grid.tiles[index];
+        tile->outbox_begin = next;
+        tile->outbox_count = 0;
+        for (size_t entry = tile->begin; entry < tile->end; entry++) {
+            const struct particle_block *block = &run->grid.blocks[run->grid.tile_blocks[entry]];
+            for (size_t lane = 0; lane < LANE_COUNT; lane++)
+                next += block->lane_count[lane];
+        }
+    }
+}
+
+static void kick_tile(struct run *run, const struct tile *tile)
+{
+    const struct shape_context context = run_shape_context(run);
+    for (size_t entry = tile->begin; entry < tile->end; entry++)
+        run->kernels->kick(&context, &run->grid.blocks[run->grid.tile_blocks[entry]]);
+}
+
+static void advance_tile(struct run *run, size_t index, struct block_scratch *scratch, bool still)
+{
+    struct tile *tile = &run->grid.tiles[index];
+    struct tile_sums *sums = &run->tile_sums[index];
+    memset(sums, 0, sizeof *sums);
+    sums->least_jacobian = 1.0;
+    for (size_t entry = tile->begin; entry < tile->end; entry++)
+        run_advance_block(run, scratch, run->grid.tile_blocks[entry], tile, sums, still);
+}
+
+static void first_pass(struct run *run)
+{
+#pragma omp parallel num_threads(run->threads) if (run->threads > 1)
+    for (size_t colour = 0; colour < TILE_COLOURS; colour++) {
+#pragma omp for schedule(dynamic, 1)
+        for (size_t index = run->grid.colour_begin[colour];
+             index < run->grid.colour_begin[colour + 1]; index++)
+            kick_tile(run, &run->grid.tiles[index]);
+    }
+}
+
+static void second_pass(struct run *run, bool still)
+{
+#pragma omp parallel num_threads(run->threads) if (run->threads > 1)
+    {
+        struct block_scratch *scratch = &run->scratch[omp_get_thread_num()];
+        for (size_t colour = 0; colour < TILE_COLOURS; colour++) {
+#pragma omp for schedule(dynamic, 1)
+            for (size_t index = run->grid.colour_begin[colour];
+                 index < run->grid.colour_begin[colour + 1]; index++)
+                advance_tile(run, index, scratch, still);
+        }
+    }
+}
+
+static struct tile_sums sum_tiles(const struct run *run)
+{
+    struct tile_sums total = {.least_jacobian = 1.0};
+    for (size_t index = 0; index < run->grid.tile_count; index++) {
+        const struct tile_sums *sums = &run->tile_sums[index];
+        total.speed_squared =
+            sums->speed_squared <= total.speed_squared ? total.speed_squared : sums->speed_squared;
+        total.least_jacobian = sums->least_jacobian >= total.least_jacobian ? total.least_jacobian
+                                                                            : sums->least_jacobian;
+        total.plastic_energy += sums->plastic_energy;
+        total.viscous_energy += sums->viscous_energy;
+    }
+    return total;
+}
+
+enum talus_status run_take_step(struct run *run, struct talus_error *error)
+{
+    partition_outbox(run);
+    if (run->scene.solver.stress_update == TALUS_STRESS_MODIFIED_LAST) {
+        run_kick_nodes(run);
+        first_pass(run);
+    }
+    run_update_nodes(run);
+    second_pass(run, false);
+    run->time += run->time_step;
+    run->interval += run->time_step;
+    run->last_time_step = run->time_step;
+    run->step++;
+    const struct tile_sums sums = sum_tiles(run);
+    run->energy.plastic += sums.plastic_energy;
+    run->energy.viscous += sums.viscous_energy;
+    enum talus_status status = run_rebin(run, error);
+    if (status == TALUS_OK)
+        status = health_check_step(run, &sums, error);
+    if (status != TALUS_OK) {
+        run->failed = true;
+        return status;
+    }
+    run_choose_time_step(run);
+    return TALUS_OK;
+}
+
+enum talus_status run_start(struct run *run, struct talus_error *error)
+{
+    if (run_find_walls(run) != 0 || run_prepare_tiles(run) != 0 || run_reserve_scratch(run) != 0)
+        return talus_error_set(error, TALUS_MEMORY, "memory", "", "out of memory at the start");
+    partition_outbox(run);
+    second_pass(run, true);
+    const struct tile_sums sums = sum_tiles(run);
+    run->largest_speed = sqrt(sums.speed_squared);
+    run_choose_time_step(run);
+    run_measure_energy(run);
+    run->audit.initial_stored = run->energy.kinetic + run->energy.strain;
+    run->audit.initial_potential = run->energy.potential;
+    run->audit.initial_energy = run->audit.initial_stored + run->energy.potential;
+    run_measure_momentum(run, run->audit.initial_momentum, &run->audit.initial_mass);
+    return TALUS_OK;
+}

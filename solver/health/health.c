@@ -1,0 +1,150 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+#include "health/health.h"
+
+#include <math.h>
+#include <stdio.h>
+
+/* Energy may exceed the books by this share of the turnover before the run is called unstable; the
+ * audit at the end is far stricter. */
+#define GROWTH_LIMIT 0.5
+enum { ENERGY_CHECK_INTERVAL = 64 };
+
+/* "particle 12 (body 'column') at (0.1, 0.2, 0)" */
+static void name_particle(const struct run *run, uint32_t id, size_t body, const double position[3],
+                          char *text, size_t size)
+{
+    (void)snprintf(text, size, "particle %u (body '%s') at (%.6g, %.6g, %.6g)", id,
+                   run->scene.bodies[body].name, position[0], position[1], position[2]);
+}
+
+static void place_of(const struct run *run, const struct particle_block *block, size_t slot,
+                     double position[3])
+{
+    for (uint32_t axis = 0; axis < 3; axis++)
+        position[axis] = 0;
+    for (uint32_t axis = 0; axis < run->grid.domain.axis_count; axis++) {
+        const int32_t cell = block->cell[axis] + (axis == 0 ? (int32_t)(slot % LANE_COUNT) : 0);
+        position[axis] = domain_position(
+            &run->grid.domain, axis, cell,
+            particle_values(&run->grid.layout, block, PARTICLE_POSITION, axis)[slot]);
+    }
+}
+
+static const char *advice(const struct run *run)
+{
+    if (run->scene.solver.stress_update == TALUS_STRESS_LAST)
+        return "try \"stress_update\": \"modified_last\", or a smaller time_step";
+    return "try a smaller time_step or courant, viscous_damping, or more particles per cell";
+}
+
+enum talus_status health_check_crosser(const struct run *run, const struct particle_block *block,
+                                       size_t slot, struct talus_error *error)
+{
+    double position[3];
+    char name[256];
+    bool finite = true, far = false;
+    for (uint32_t axis = 0; axis < run->grid.domain.axis_count; axis++) {
+        const double x = particle_values(&run->grid.layout, block, PARTICLE_POSITION, axis)[slot];
+        const double v = particle_values(&run->grid.layout, block, PARTICLE_VELOCITY, axis)[slot];
+        finite = finite && isfinite(x) && isfinite(v);
+        far = far || fabs(x) > 1.5;
+    }
+    if (finite && !far)
+        return TALUS_OK;
+    place_of(run, block, slot, position);
+    name_particle(run, block->id[slot], block->body == NULL ? 0 : block->body[slot], position, name,
+                  sizeof name);
+    if (!finite)
+        return talus_error_set(
+            error, TALUS_UNSTABLE, "non_finite", "",
+            "position or velocity of %s is not a number at t = %.6g s, step %llu; %s", name,
+            run->time, (unsigned long long)run->step, advice(run));
+    return talus_error_set(
+        error, TALUS_UNSTABLE, "too_fast", "",
+        "%s moved by more than a cell in one step of %.3g s at t = %.6g s, step %llu; %s", name,
+        run->time_step, run->time, (unsigned long long)run->step, advice(run));
+}
+
+enum talus_status health_check_outside(const struct run *run, const struct particle_record *record,
+                                       const double position[3], struct talus_error *error)
+{
+    char name[256];
+    if (run->scene.grid.outside == TALUS_OUTSIDE_ELIMINATE) {
+        const double limit = run->scene.grid.outside_mass_limit * run->audit.initial_mass;
+        if (run->audit.outside_mass <= limit)
+            return TALUS_OK;
+        return talus_error_set(
+            error, TALUS_UNSTABLE, "outside_mass", "/grid/outside_mass_limit",
+            "%.6g kg have left the grid by t = %.6g s, more than %.3g of the mass; "
+            "enlarge the grid, or raise outside_mass_limit",
+            run->audit.outside_mass, run->time, run->scene.grid.outside_mass_limit);
+    }
+    name_particle(run, record->id, record->body, position, name, sizeof name);
+    return talus_error_set(
+        error, TALUS_UNSTABLE, "outside", "/grid",
+        "%s left the grid at t = %.6g s, step %llu; enlarge the grid, add a boundary, "
+        "or set \"outside\": \"eliminate\"",
+        name, run->time, (unsigned long long)run->step);
+}
+
+/* Finds the particle behind a bad sum, for the message. */
+static enum talus_status blame_strain(const struct run *run, double jacobian,
+                                      struct talus_error *error)
+{
+    char name[256] = "a particle";
+    for (size_t index = 0; index < run->grid.block_count; index++) {
+        const struct particle_block *block = &run->grid.blocks[index];
+        for (size_t slot = 0; slot < (size_t)block->row_count * LANE_COUNT; slot++) {
+            const double volume =
+                particle_values(&run->grid.layout, block, PARTICLE_VOLUME, 0)[slot];
+            const double strain =
+                particle_values(&run->grid.layout, block, PARTICLE_STRAIN, 0)[slot];
+            if (block->id[slot] == PARTICLE_NONE || (volume > 0 && isfinite(strain)))
+                continue;
+            double position[3];
+            place_of(run, block, slot, position);
+            name_particle(run, block->id[slot], block->body == NULL ? 0 : block->body[slot],
+                          position, name, sizeof name);
+            index = run->grid.block_count - 1;
+            break;
+        }
+    }
+    return talus_error_set(
+        error, TALUS_UNSTABLE, "inverted", "",
+        "det of the deformation increment of %s is %.3g at t = %.6g s, step %llu; %s", name,
+        jacobian, run->time, (unsigned long long)run->step, advice(run));
+}
+
+static enum talus_status check_energy(struct run *run, struct talus_error *error)
+{
+    run_measure_energy(run);
+    const double turnover = run_energy_turnover(run);
+    const double growth = turnover > 0 ? -run_numerical_loss(run) / turnover : 0.0;
+    if (growth > run->audit.largest_growth)
+        run->audit.largest_growth = growth;
+    if (growth <= GROWTH_LIMIT)
+        return TALUS_OK;
+    return talus_error_set(
+        error, TALUS_UNSTABLE, "energy_growth", "",
+        "energy has grown by %.3g of the energy turned over beyond the work done at "
+        "t = %.6g s, step %llu; %s",
+        growth, run->time, (unsigned long long)run->step, advice(run));
+}
+
+enum talus_status health_check_step(struct run *run, const struct tile_sums *sums,
+                                    struct talus_error *error)
+{
+    if (!(sums->least_jacobian > 0))
+        return blame_strain(run, sums->least_jacobian, error);
+    const double speed = sqrt(sums->speed_squared);
+    if (!isfinite(speed))
+        return talus_error_set(error, TALUS_UNSTABLE, "non_finite", "",
+                               "a particle velocity is not a number at t = %.6g s, step %llu; %s",
+                               run->time, (unsigned long long)run->step, advice(run));
+    const bool jumped = speed > 2 * run->checked_speed && run->checked_speed > 0;
+    run->largest_speed = speed;
+    if (run->step > 1 && !jumped && run->step % ENERGY_CHECK_INTERVAL != 0)
+        return TALUS_OK;
+    run->checked_speed = speed;
+    return check_energy(run, error);
+}

@@ -1,0 +1,26 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* What makes a run unstable: found within the step, named (particle, place, time, quantity, what to
+ * try). */
+#ifndef TALUS_HEALTH_H
+#define TALUS_HEALTH_H
+
+#include "explicit/run.h"
+
+/* A particle that left its cell: finite, and not farther than a cell in one step. */
+TALUS_MUST_CHECK enum talus_status health_check_crosser(const struct run *run,
+                                                        const struct particle_block *block,
+                                                        size_t slot, struct talus_error *error);
+
+/* A particle that left the grid or was taken out: an error, or booked as eliminated up to the
+ * limit. */
+TALUS_MUST_CHECK enum talus_status health_check_outside(const struct run *run,
+                                                        const struct particle_record *record,
+                                                        const double position[3],
+                                                        struct talus_error *error);
+
+/* After the second pass: det of the incremental deformation gradient, speeds, and, when the speed
+ * has jumped or every 64 steps, energy against the work done. */
+TALUS_MUST_CHECK enum talus_status health_check_step(struct run *run, const struct tile_sums *sums,
+                                                     struct talus_error *error);
+
+#endif
