@@ -1,0 +1,201 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* From a scene to a run without particles: materials, walls, layout, scratch. */
+#include "simulation/scene_copy.h"
+#include "simulation/simulation_private.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+static bool scene_wants(const struct talus_scene *scene, enum talus_field field)
+{
+    if (scene->output.frame_fields >> field & 1)
+        return true;
+    for (size_t index = 0; index < scene->probe_count; index++) {
+        const struct talus_probe *probe = &scene->probes[index];
+        if ((probe->kind == TALUS_PROBE_POINT || probe->kind == TALUS_PROBE_INTEGRAL) &&
+            probe->field == field)
+            return true;
+    }
+    return false;
+}
+
+static const struct material *model_of(const struct talus_scene *scene, size_t index)
+{
+    return material_table[scene->materials[index].model_index];
+}
+
+static size_t strain_components(const struct talus_scene *scene)
+{
+    return scene->axis_count == 1 ? 3 : scene->axis_count == 2 ? 4 : 6;
+}
+
+void run_layout(const struct talus_scene *scene, struct particle_layout *layout)
+{
+    const uint32_t axes = (uint32_t)scene->axis_count;
+    const uint32_t tensor = (uint32_t)strain_components(scene);
+    bool volumetric = true;
+    uint32_t history = 0;
+    memset(layout, 0, sizeof *layout);
+    for (size_t index = 0; index < scene->material_count; index++) {
+        volumetric = volumetric && model_of(scene, index)->volumetric;
+        const uint32_t states = (uint32_t)model_of(scene, index)->state_count;
+        history = states > history ? states : history;
+    }
+    uint32_t *count = layout->component_count;
+    count[PARTICLE_POSITION] = count[PARTICLE_VELOCITY] = axes;
+    count[PARTICLE_MASS] = count[PARTICLE_VOLUME] = 1;
+    count[PARTICLE_STRAIN] = volumetric ? 1 : tensor;
+    count[PARTICLE_HISTORY] = history;
+    count[PARTICLE_PLASTIC_STRAIN] = scene_wants(scene, TALUS_FIELD_PLASTIC_STRAIN);
+    const bool stress = scene_wants(scene, TALUS_FIELD_STRESS) ||
+                        scene_wants(scene, TALUS_FIELD_MEAN_STRESS) ||
+                        scene_wants(scene, TALUS_FIELD_VON_MISES);
+    count[PARTICLE_STRESS] = stress ? tensor : 0;
+    count[PARTICLE_DISPLACEMENT] = scene_wants(scene, TALUS_FIELD_DISPLACEMENT) ? axes : 0;
+    const bool finite = scene->solver.strain == TALUS_STRAIN_FINITE;
+    const bool strain = scene_wants(scene, TALUS_FIELD_STRAIN);
+    count[PARTICLE_GRADIENT] =
+        scene_wants(scene, TALUS_FIELD_DEFORMATION_GRADIENT) || (strain && finite) ? axes * axes
+                                                                                   : 0;
+    count[PARTICLE_TOTAL_STRAIN] = strain && !finite ? tensor : 0;
+    layout->has_body = scene->body_count > 1;
+    particle_layout_finish(layout);
+}
+
+static void build_domain(const struct talus_scene *scene, struct domain *domain)
+{
+    domain->axis_count = scene->axis_count;
+    for (size_t axis = 0; axis < 3; axis++) {
+        const bool used = axis < scene->axis_count;
+        domain->cell[axis] = used ? scene->grid.cell[axis] : 1.0;
+        domain->inverse_cell[axis] = 1.0 / domain->cell[axis];
+        domain->min[axis] = used ? scene->grid.min[axis] : 0.0;
+        domain->cell_count[axis] = used ? (int32_t)scene->grid.cell_count[axis] : 1;
+    }
+}
+
+static enum talus_status build_materials(struct run *run, struct talus_error *error)
+{
+    const size_t count = run->scene.material_count;
+    run->materials = calloc(count + 1, sizeof *run->materials);
+    run->body_material = calloc(run->scene.body_count + 1, sizeof *run->body_material);
+    if (run->materials == NULL || run->body_material == NULL)
+        return talus_error_set(error, TALUS_MEMORY, "memory", "", "out of memory");
+    run->reference_density = INFINITY;
+    for (size_t index = 0; index < count; index++) {
+        struct run_material *material = &run->materials[index];
+        const double *values = run->scene.materials[index].values;
+        double bulk = 0, shear = 0;
+        material->model = model_of(&run->scene, index);
+        material->constants = calloc(1, material->model->constants_size + 1);
+        if (material->constants == NULL)
+            return talus_error_set(error, TALUS_MEMORY, "memory", "", "out of memory");
+        material->model->prepare(values, material->constants);
+        material->density = values[MATERIAL_VALUE_DENSITY];
+        material->wave_speed = material->model->wave_speed(material->constants);
+        material_elastic_moduli(material->model, values, &bulk, &shear);
+        material->bulk_speed = sqrt(bulk / material->density);
+        material->viscosity = material->model->viscosity == NULL
+                                  ? 0
+                                  : material->model->viscosity(material->constants);
+        run->any_volumetric = run->any_volumetric || material->model->volumetric;
+        run->any_tensor = run->any_tensor || !material->model->volumetric;
+        run->any_plastic = run->any_plastic || material->model->plastic;
+        run->any_rate = run->any_rate || material->model->needs_rate;
+        run->reference_density = fmin(run->reference_density, material->density);
+    }
+    for (size_t index = 0; index < run->scene.body_count; index++)
+        run->body_material[index] = (uint16_t)run->scene.bodies[index].material_index;
+    return TALUS_OK;
+}
+
+static enum talus_status build_walls(struct run *run, struct talus_error *error)
+{
+    if (wall_set_create(&run->walls, &run->scene, &run->grid.domain) != 0)
+        return talus_error_set(error, TALUS_MEMORY, "memory", "", "out of memory");
+    const size_t windows = run->walls.face_count + run->scene.boundary_count;
+    run->faces = calloc(run->walls.face_count + 1, sizeof *run->faces);
+    run->boundaries = calloc(run->scene.boundary_count + 1, sizeof *run->boundaries);
+    run->windows = calloc(windows + 1, sizeof *run->windows);
+    run->scratch = calloc((size_t)run->threads, sizeof *run->scratch);
+    if (run->faces == NULL || run->boundaries == NULL || run->windows == NULL ||
+        run->scratch == NULL)
+        return talus_error_set(error, TALUS_MEMORY, "memory", "", "out of memory");
+    return TALUS_OK;
+}
+
+/* The ring of a running mean holds the steps of a window, with room for steps four times shorter.
+ */
+static enum talus_status build_windows(struct run *run, struct talus_error *error)
+{
+    const double step = run->scene.solver.time_step > 0
+                            ? run->scene.solver.time_step
+                            : run->scene.solver.courant * run_critical_time_step(run, 0) / 4;
+    const size_t windows = run->walls.face_count + run->scene.boundary_count;
+    for (size_t index = 0; index < windows; index++) {
+        const size_t boundary = index < run->walls.face_count
+                                    ? run->walls.faces[index].boundary_index
+                                    : index - run->walls.face_count;
+        const double length = run->scene.boundaries[boundary].peak_window;
+        if (!(length > 0))
+            continue;
+        run->windows[index].capacity = (size_t)fmin(1e6, ceil(length / step)) + 4;
+        run->windows[index].entries = calloc(4 * run->windows[index].capacity, sizeof(double));
+        if (run->windows[index].entries == NULL)
+            return talus_error_set(error, TALUS_MEMORY, "memory", "", "out of memory");
+    }
+    return TALUS_OK;
+}
+
+enum talus_status run_build(struct run *run, const struct talus_scene *scene, int threads,
+                            struct talus_error *error)
+{
+    memset(run, 0, sizeof *run);
+    if (scene_copy(scene, &run->scene) != 0)
+        return talus_error_set(error, TALUS_MEMORY, "memory", "", "out of memory");
+    if (scene->material_count > 64)
+        return talus_error_set(error, TALUS_INVALID, "range", "/materials",
+                               "%zu materials; at most 64 are possible", scene->material_count);
+    run->threads = threads < 1 ? 1 : threads;
+    run->finite_strain = scene->solver.strain == TALUS_STRAIN_FINITE;
+    run->strain_components = strain_components(scene);
+    build_domain(scene, &run->grid.domain);
+    run_layout(&run->scene, &run->grid.layout);
+    run->stored_components = run->grid.layout.component_count[PARTICLE_STRAIN];
+    node_layout_init(&run->grid.nodes.layout, scene->axis_count);
+    run->shape = shape_table[scene->solver.shape_index];
+    run->kernels = run->shape->kernels[scene->axis_count - 1];
+    enum talus_status status = build_materials(run, error);
+    if (status == TALUS_OK)
+        status = build_walls(run, error);
+    if (status == TALUS_OK)
+        status = build_windows(run, error);
+    return status;
+}
+
+void run_release(struct run *run)
+{
+    for (size_t index = 0; run->materials != NULL && index < run->scene.material_count; index++)
+        free(run->materials[index].constants);
+    for (size_t index = 0;
+         run->windows != NULL && index < run->walls.face_count + run->scene.boundary_count; index++)
+        free(run->windows[index].entries);
+    for (int thread = 0; run->scratch != NULL && thread < run->threads; thread++)
+        block_scratch_release(&run->scratch[thread]);
+    free(run->materials);
+    free(run->body_material);
+    free(run->wall_nodes);
+    free(run->block_walled);
+    free(run->faces);
+    free(run->boundaries);
+    free(run->windows);
+    free(run->wall_partials);
+    free(run->scratch);
+    free(run->outbox);
+    free(run->tile_sums);
+    wall_set_release(&run->walls);
+    sparse_grid_release(&run->grid);
+    talus_scene_release(&run->scene);
+    memset(run, 0, sizeof *run);
+}

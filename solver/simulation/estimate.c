@@ -1,0 +1,56 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* What a scene costs, before anything is allocated for it. */
+#include "seeding/seeding.h"
+#include "simulation/simulation_private.h"
+
+#include <math.h>
+#include <string.h>
+
+static double fastest_body(const struct talus_scene *scene)
+{
+    double fastest = 0;
+    for (size_t index = 0; index < scene->body_count; index++) {
+        const double *v = scene->bodies[index].velocity;
+        fastest = fmax(fastest, sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]));
+    }
+    return fastest;
+}
+
+static uint64_t saturate(double value)
+{
+    return value >= 1.8e19 ? UINT64_MAX : (uint64_t)value;
+}
+
+enum talus_status talus_simulation_estimate(const struct talus_scene *scene,
+                                            struct talus_estimate *estimate,
+                                            struct talus_error *error)
+{
+    struct run run;
+    memset(estimate, 0, sizeof *estimate);
+    enum talus_status status = run_build(&run, scene, 1, error);
+    if (status != TALUS_OK) {
+        run_release(&run);
+        return status;
+    }
+    seeding_count(scene, &estimate->particle_count, &estimate->active_cell_count);
+    const double critical = run_critical_time_step(&run, fastest_body(scene));
+    const double fixed = scene->solver.time_step;
+    estimate->critical_time_step = critical;
+    estimate->time_step = fixed > 0 ? fixed : scene->solver.courant * critical;
+    estimate->step_count = saturate(ceil(scene->duration / estimate->time_step * (1 - 1e-12)));
+    const double chunk = (double)particle_chunk_bytes(&run.grid.layout, 64) / (64 * LANE_COUNT);
+    estimate->bytes_per_particle = (uint64_t)ceil(chunk);
+    const double per_node_block =
+        (double)run.grid.nodes.layout.component_count * LANE_COUNT * sizeof(double);
+    /* Chunks are a quarter too large on average; nodes double when they grow. */
+    estimate->memory_bytes = saturate(
+        1.4 * chunk * (double)estimate->particle_count +
+        (double)estimate->active_cell_count / LANE_COUNT * (2.5 * per_node_block + 200) + 4e6);
+    run_release(&run);
+    if (fixed > critical && !scene->solver.allow_unstable)
+        return talus_error_set(error, TALUS_INVALID, "over_critical", "/solver/time_step",
+                               "%.6g s is above the critical step of %.6g s for this method; use "
+                               "\"auto\", a smaller step, or \"allow_unstable\": true",
+                               fixed, critical);
+    return TALUS_OK;
+}

@@ -1,0 +1,249 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* Life of a simulation: create, step, destroy. */
+#include "talus/simulation.h"
+
+#include "math/log_strain.h"
+#include "seeding/seeding.h"
+#include "simulation/simulation_private.h"
+
+#include <math.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+void simulation_warn(struct talus_simulation *simulation, const char *code, const char *pointer,
+                     const char *format, ...)
+{
+    if (simulation->warning_count == WARNING_CAPACITY)
+        return;
+    struct talus_warning *warning =
+        &simulation->warnings[(simulation->warning_first + simulation->warning_count++) %
+                              WARNING_CAPACITY];
+    va_list arguments;
+    va_start(arguments, format);
+    (void)snprintf(warning->code, sizeof warning->code, "%s", code);
+    (void)snprintf(warning->pointer, sizeof warning->pointer, "%s", pointer);
+    (void)vsnprintf(warning->text, sizeof warning->text, format, arguments);
+    va_end(arguments);
+}
+
+bool talus_simulation_take_warning(struct talus_simulation *simulation,
+                                   struct talus_warning *warning)
+{
+    if (simulation->warning_count == 0)
+        return false;
+    *warning = simulation->warnings[simulation->warning_first];
+    simulation->warning_first = (simulation->warning_first + 1) % WARNING_CAPACITY;
+    simulation->warning_count--;
+    return true;
+}
+
+/* Elastic strain of the initial stress, in the stored form. */
+static void set_initial_strain(const struct run *run, const struct particle_seed *seed,
+                               size_t particle, struct particle_record *record)
+{
+    const struct particle_layout *layout = &run->grid.layout;
+    const struct run_material *material = &run->materials[run->body_material[seed->body[particle]]];
+    double stress[6] = {0}, strain[6] = {0}, stored[6] = {0};
+    for (size_t component = 0; seed->stress[0] != NULL && component < 6; component++)
+        stress[component] = seed->stress[component][particle];
+    material->model->strain_from_stress(material->constants, stress, strain);
+    memcpy(stored, strain, sizeof stored);
+    if (run->finite_strain && !material->model->volumetric) {
+        double *in[6], *out[6];
+        for (size_t component = 0; component < 6; component++) {
+            in[component] = &strain[component];
+            out[component] = &stored[component];
+        }
+        exp_strain_batch(1, run->strain_components, in, out);
+    }
+    for (size_t component = 0; component < run->stored_components; component++)
+        record->values[layout->first_component[PARTICLE_STRAIN] + component] = stored[component];
+    if (material->model->initialise != NULL)
+        material->model->initialise(material->constants, strain,
+                                    &record->values[layout->first_component[PARTICLE_HISTORY]]);
+}
+
+static enum talus_status place_particle(struct run *run, const struct particle_seed *seed,
+                                        size_t particle, struct talus_error *error)
+{
+    const struct particle_layout *layout = &run->grid.layout;
+    const struct domain *domain = &run->grid.domain;
+    struct particle_record *record = &run->carried;
+    int32_t cell[3] = {0, 0, 0};
+    memset(record, 0, sizeof *record);
+    record->id = (uint32_t)particle;
+    record->body = seed->body[particle];
+    for (size_t axis = 0; axis < domain->axis_count; axis++) {
+        const double lines =
+            (seed->position[axis][particle] - domain->min[axis]) * domain->inverse_cell[axis];
+        const double limited = fmin(fmax(floor(lines), 0), (double)domain->cell_count[axis] - 1);
+        cell[axis] = (int32_t)limited;
+        record->values[layout->first_component[PARTICLE_POSITION] + axis] =
+            fmin(fmax(lines - limited - 0.5, -0.5), 0.5);
+        record->values[layout->first_component[PARTICLE_VELOCITY] + axis] =
+            seed->velocity[axis][particle];
+    }
+    record->values[layout->first_component[PARTICLE_MASS]] = seed->mass[particle];
+    record->values[layout->first_component[PARTICLE_VOLUME]] = seed->volume[particle];
+    set_initial_strain(run, seed, particle, record);
+    size_t slot = 0;
+    if (sparse_grid_insert(&run->grid, cell, record, &slot) == BLOCK_NONE)
+        return talus_error_set(error, TALUS_MEMORY, "memory", "",
+                               "out of memory while placing particle %zu of %zu", particle,
+                               seed->count);
+    return TALUS_OK;
+}
+
+static enum talus_status place_particles(struct run *run, struct talus_error *error)
+{
+    struct particle_seed seed = {0};
+    enum talus_status status = seeding_create(&run->scene, &seed, error);
+    double least_mass = INFINITY;
+    if (status == TALUS_OK && run->grid.layout.double_count > PARTICLE_MAX_DOUBLES)
+        status = talus_error_set(error, TALUS_INTERNAL, "layout", "", "a particle has %u values",
+                                 run->grid.layout.double_count);
+    for (size_t particle = 0; status == TALUS_OK && particle < seed.count; particle++) {
+        status = place_particle(run, &seed, particle, error);
+        least_mass = fmin(least_mass, seed.mass[particle]);
+    }
+    run->initial_particle_count = seed.count;
+    run->mass_cutoff = 1e-11 * least_mass;
+    seeding_release(&seed);
+    return status;
+}
+
+static enum talus_status prepare(struct talus_simulation *simulation, struct talus_error *error)
+{
+    struct run *run = &simulation->run;
+    run->outbox = malloc((run->initial_particle_count + 1) * sizeof *run->outbox);
+    simulation->probe_ids = calloc(run->scene.probe_count + 1, sizeof *simulation->probe_ids);
+    if (run->outbox == NULL || simulation->probe_ids == NULL ||
+        simulation_make_columns(simulation) != 0)
+        return talus_error_set(error, TALUS_MEMORY, "memory", "", "out of memory");
+    return TALUS_OK;
+}
+
+enum talus_status talus_simulation_create(const struct talus_scene *scene,
+                                          const struct talus_simulation_options *options,
+                                          struct talus_simulation **simulation,
+                                          struct talus_error *error)
+{
+    struct talus_simulation *created = calloc(1, sizeof *created);
+    *simulation = NULL;
+    if (created == NULL)
+        return talus_error_set(error, TALUS_MEMORY, "memory", "", "out of memory");
+    enum talus_status status = run_build(&created->run, scene, options->threads, error);
+    if (status == TALUS_OK)
+        status = place_particles(&created->run, error);
+    if (status == TALUS_OK)
+        status = prepare(created, error);
+    if (status == TALUS_OK)
+        status = run_start(&created->run, error);
+    if (status != TALUS_OK) {
+        talus_simulation_destroy(created);
+        return status;
+    }
+    probes_locate(created);
+    *simulation = created;
+    return TALUS_OK;
+}
+
+void talus_simulation_destroy(struct talus_simulation *simulation)
+{
+    if (simulation == NULL)
+        return;
+    run_release(&simulation->run);
+    free(simulation->columns);
+    free(simulation->metrics);
+    free(simulation->probe_ids);
+    free(simulation->blobs);
+    free(simulation->blob_memory);
+    free(simulation);
+}
+
+enum talus_status talus_simulation_step(struct talus_simulation *simulation,
+                                        struct talus_error *error)
+{
+    struct run *run = &simulation->run;
+    if (run->failed)
+        return talus_error_set(error, TALUS_UNSTABLE, "failed", "",
+                               "the simulation has become unstable and cannot go on");
+    if (run->time_step <= 0)
+        return TALUS_OK;
+    const enum talus_status status = run_take_step(run, error);
+    if (status != TALUS_OK)
+        return status;
+    const double fixed = run->scene.solver.time_step;
+    if (fixed > run->critical_time_step && !run->over_critical_warned) {
+        run->over_critical_warned = true;
+        simulation_warn(simulation, "over_critical", "/solver/time_step",
+                        "the fixed step of %.4g s has exceeded the critical step of %.4g s at "
+                        "t = %.6g s (fastest particle %.4g m/s)",
+                        fixed, run->critical_time_step, run->time, run->largest_speed);
+    }
+    return TALUS_OK;
+}
+
+void talus_simulation_get_state(const struct talus_simulation *simulation,
+                                struct talus_simulation_state *state)
+{
+    const struct run *run = &simulation->run;
+    *state = (struct talus_simulation_state){
+        .time = run->time,
+        .duration = run->scene.duration,
+        .step = run->step,
+        .time_step = run->time_step,
+        .critical_time_step = run->critical_time_step,
+        .particle_count = sparse_grid_particle_count(&run->grid),
+        .initial_particle_count = run->initial_particle_count,
+        .active_cell_count = sparse_grid_active_cells(&run->grid),
+        .memory_bytes = sparse_grid_memory(&run->grid),
+        .eliminated_mass = run->audit.eliminated_mass,
+        .finished = run->time_step <= 0,
+    };
+}
+
+enum talus_status talus_simulation_set_duration(struct talus_simulation *simulation,
+                                                double duration, struct talus_error *error)
+{
+    if (!(duration >= simulation->run.time) || !isfinite(duration))
+        return talus_error_set(error, TALUS_INVALID, "range", "/duration",
+                               "the end %.6g s is before the present time %.6g s", duration,
+                               simulation->run.time);
+    simulation->run.scene.duration = duration;
+    run_choose_time_step(&simulation->run);
+    return TALUS_OK;
+}
+
+bool talus_simulation_is_nearest(const struct talus_simulation *simulation, double time)
+{
+    const struct run *run = &simulation->run;
+    return run->time_step <= 0 || run->time + 0.5 * run->time_step > time;
+}
+
+enum talus_status talus_simulation_audit(struct talus_simulation *simulation,
+                                         struct talus_error *error)
+{
+    struct run *run = &simulation->run;
+    size_t count = 0;
+    double mass = 0, momentum = 0, growth = 0;
+    const struct talus_metric *metrics = talus_simulation_metrics(simulation, &count);
+    for (size_t index = 0; index < count; index++) {
+        if (strcmp(metrics[index].name, "mass_error") == 0)
+            mass = metrics[index].value;
+        if (strcmp(metrics[index].name, "momentum_error") == 0)
+            momentum = metrics[index].value;
+        if (strcmp(metrics[index].name, "energy_error") == 0)
+            growth = metrics[index].value;
+    }
+    const double limit = run->scene.energy_growth_limit;
+    if (mass <= 1e-12 && momentum <= 1e-9 && growth <= limit)
+        return TALUS_OK;
+    return talus_error_set(
+        error, TALUS_AUDIT, "audit", "",
+        "mass error %.3g (limit 1e-12), momentum error %.3g (limit 1e-9), energy "
+        "growth %.3g (limit %.3g) of the energy turned over",
+        mass, momentum, growth, limit);
+}

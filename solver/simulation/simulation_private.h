@@ -1,0 +1,58 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* What the files of simulation/ share. */
+#ifndef TALUS_SIMULATION_PRIVATE_H
+#define TALUS_SIMULATION_PRIVATE_H
+
+#include "explicit/run.h"
+#include "talus/simulation.h"
+
+enum { WARNING_CAPACITY = 32 };
+
+struct talus_simulation {
+    struct run run;
+    struct talus_column *columns; /* owned */
+    size_t column_count;
+    struct talus_metric *metrics; /* owned */
+    size_t metric_count, metric_capacity;
+    struct talus_warning warnings[WARNING_CAPACITY];
+    size_t warning_first, warning_count;
+    uint32_t *probe_ids;      /* [probe_count] id of the particle of a point probe; owned */
+    struct talus_blob *blobs; /* owned, with what they point to in blob_memory */
+    size_t blob_count;
+    void *blob_memory;
+};
+
+__attribute__((format(printf, 4, 5))) void simulation_warn(struct talus_simulation *simulation,
+                                                           const char *code, const char *pointer,
+                                                           const char *format, ...);
+
+/* ---- build.c: from the scene, without particles ---- */
+TALUS_MUST_CHECK enum talus_status run_build(struct run *run, const struct talus_scene *scene,
+                                             int threads, struct talus_error *error);
+void run_release(struct run *run);
+/* Which fields the scene stores. */
+void run_layout(const struct talus_scene *scene, struct particle_layout *layout);
+
+/* ---- columns.c ---- */
+int simulation_make_columns(struct talus_simulation *simulation);
+
+/* ---- probes.c ---- */
+/* Number of columns of a probe; with a simulation also their names and units. */
+size_t probe_columns(const struct talus_scene *scene, const struct talus_probe *probe,
+                     struct talus_column *columns);
+void probe_sample(const struct talus_simulation *simulation, size_t probe_index, double *values);
+/* Finds the particles of point probes; at t = 0. */
+void probes_locate(struct talus_simulation *simulation);
+double run_energy_part(const struct run *run, enum talus_energy_part part);
+/* World position of a slot of a block. */
+void run_slot_position(const struct run *run, const struct particle_block *block, size_t slot,
+                       double position[3]);
+
+/* ---- frames.c ---- */
+/* Values of a field at one slot, components of it; the field must be available. */
+void field_values(const struct run *run, const struct particle_block *block, size_t slot,
+                  enum talus_field field, double *values);
+size_t field_components(enum talus_field field);
+bool field_is_stored(const struct run *run, enum talus_field field);
+
+#endif
