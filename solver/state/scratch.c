@@ -23,10 +23,10 @@ int block_scratch_reserve(struct block_scratch *scratch, size_t slots)
     free(scratch->memory);
     scratch->memory = memory;
     scratch->capacity = capacity;
-    double **arrays = scratch->gradient;
+    char *arrays = (char *)scratch + offsetof(struct block_scratch, gradient);
     for (size_t index = 0; index < ARRAY_COUNT; index++) {
         double *array = memory + index * capacity;
-        memcpy((char *)arrays + index * sizeof array, &array, sizeof array);
+        memcpy(arrays + index * sizeof array, &array, sizeof array);
     }
     return 0;
 }
