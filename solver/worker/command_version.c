@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
+#include "talus/simulation.h"
 #include "talus/version.h"
 #include "worker/command.h"
 
@@ -8,5 +9,5 @@ int command_version(int argument_count, char **arguments)
 {
     (void)argument_count;
     (void)arguments;
-    return printf("%s\n", talus_build()) < 0;
+    return printf("%s %s\n", talus_build(), talus_simulation_isa()) < 0;
 }

@@ -2,6 +2,7 @@
 #include "base/protocol.h"
 #include "talus/version.h"
 #include "worker/command.h"
+#include "worker/isa.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -23,6 +24,7 @@ static void print_usage(FILE *stream)
 
 int main(int argument_count, char **arguments)
 {
+    isa_switch(arguments);
     if (argument_count < 2) {
         print_usage(stderr);
         return PROTOCOL_EXIT_OTHER;
