@@ -54,6 +54,7 @@ struct wall_set {
 struct wall_shape {
     enum talus_boundary_shape kind;
     bool eliminates;
+    int body_index;         /* eliminates particles of this body only; -1: of all */
     bool source_rule; /* contact area h^2 a node */
     int axis;         /* axis-aligned plane or face: the axis of the normal; else -1 */
     int32_t line;     /* its grid line */
@@ -82,8 +83,8 @@ void wall_set_release(struct wall_set *walls);
 void wall_set_node_faces(const struct wall_set *walls, const struct domain *domain,
                          const int32_t node[3], struct node_faces *faces);
 
-/* True if a particle at `position` is behind an eliminating boundary. */
-bool wall_set_eliminates(const struct wall_set *walls, const double position[3]);
+/* True if a particle of that body at `position` is behind an eliminating boundary. */
+bool wall_set_eliminates(const struct wall_set *walls, const double position[3], int body_index);
 /* True if some point of the box [low, high] may be behind one. */
 bool wall_set_may_eliminate(const struct wall_set *walls, const double low[3],
                             const double high[3]);

@@ -32,11 +32,12 @@ static bool behind(const struct wall_shape *shape, size_t axis_count, const doub
     return shape->kind == TALUS_BOUNDARY_PLANE || within_rectangle(shape, axis_count, position);
 }
 
-bool wall_set_eliminates(const struct wall_set *walls, const double position[3])
+bool wall_set_eliminates(const struct wall_set *walls, const double position[3], int body_index)
 {
     for (size_t index = 0; index < walls->boundary_count; index++) {
-        if (walls->shapes[index].eliminates &&
-            behind(&walls->shapes[index], walls->axis_count, position))
+        const struct wall_shape *shape = &walls->shapes[index];
+        if (shape->eliminates && (shape->body_index < 0 || shape->body_index == body_index) &&
+            behind(shape, walls->axis_count, position))
             return true;
     }
     return false;

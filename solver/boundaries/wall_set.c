@@ -19,6 +19,7 @@ static void shape_from_boundary(struct wall_shape *shape, const struct talus_bou
 {
     shape->kind = boundary->shape;
     shape->source_rule = boundary->area_source_rule;
+    shape->body_index = boundary->body_index;
     shape->axis = -1;
     memcpy(shape->point, boundary->point, sizeof shape->point);
     memcpy(shape->normal, boundary->normal, sizeof shape->normal);

@@ -4,6 +4,7 @@
 #include "simulation/simulation_private.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -125,6 +126,24 @@ static enum talus_status build_walls(struct run *run, struct talus_error *error)
     return TALUS_OK;
 }
 
+/* Bodies share one velocity field: a condition at a node acts on all that is there. */
+static enum talus_status refuse_body_filters(const struct talus_scene *scene,
+                                             struct talus_error *error)
+{
+    for (size_t index = 0; index < scene->boundary_count; index++) {
+        const struct talus_boundary *boundary = &scene->boundaries[index];
+        char pointer[64];
+        if (boundary->body_index < 0 ||
+            boundary_table[boundary->faces[0].condition_index]->eliminates)
+            continue;
+        (void)snprintf(pointer, sizeof pointer, "/boundaries/%zu/body", index);
+        return talus_error_set(error, TALUS_UNSUPPORTED, "unsupported", pointer,
+                               "only the condition eliminate can act on one body: bodies share one "
+                               "velocity field, so a wall acts on all that is there");
+    }
+    return TALUS_OK;
+}
+
 /* The ring of a running mean holds the steps of a window, with room for steps four times shorter.
  */
 static enum talus_status build_windows(struct run *run, struct talus_error *error)
@@ -157,6 +176,8 @@ enum talus_status run_build(struct run *run, const struct talus_scene *scene, in
     if (scene->material_count > 64)
         return talus_error_set(error, TALUS_INVALID, "range", "/materials",
                                "%zu materials; at most 64 are possible", scene->material_count);
+    if (refuse_body_filters(scene, error) != TALUS_OK)
+        return TALUS_UNSUPPORTED;
     run->threads = threads < 1 ? 1 : threads;
     run->finite_strain = scene->solver.strain == TALUS_STRAIN_FINITE;
     run->strain_components = strain_components(scene);
