@@ -9,6 +9,8 @@
 /* Rows of a chunk: large enough to pack well, small enough that one fits HDF5's chunk cache (1 MiB)
  * up to 16 doubles a row. */
 enum { CHUNK_ROWS = 8192 };
+/* Smaller datasets lie in the file as they are: the index of chunks would outweigh them. */
+enum { PACKED_VALUES_MIN = 2048 };
 /* Level 1 packs shuffled floats nearly as well as higher ones, at a third of their time. */
 enum { GZIP_LEVEL = 1 };
 
@@ -44,15 +46,19 @@ enum talus_status hdf5_error(struct talus_error *error, const char *action, cons
                            summary.text);
 }
 
-static void silence_hdf5(void)
+/* To be called before anything else of HDF5. Its errors are ours to print, and its clean-up at exit
+ * must not run: it crashes on a file whose last write failed (HDF5 1.10, h5py issue 914), and we
+ * close what we open. */
+static void prepare_hdf5(void)
 {
+    (void)H5dont_atexit();
     (void)H5Eset_auto2(H5E_DEFAULT, NULL, NULL);
 }
 
 enum talus_status hdf5_create(struct hdf5_file *file, const char *path, struct talus_error *error)
 {
     file->file = H5I_INVALID_HID;
-    silence_hdf5();
+    prepare_hdf5();
     if (snprintf(file->path, sizeof file->path, "%s", path) >= FILE_PATH_SIZE)
         return talus_error_set(error, TALUS_IO, "path", "", "path too long");
     enum talus_status status = file_aside_path(file->aside, path, error);
@@ -65,12 +71,13 @@ enum talus_status hdf5_create(struct hdf5_file *file, const char *path, struct t
 enum talus_status hdf5_publish(struct hdf5_file *file, struct talus_error *error)
 {
     hid_t handle = file->file;
+    /* A handle whose closing failed is still valid for HDF5, but must not be closed again. */
+    file->file = H5I_INVALID_HID;
     if (H5Fclose(handle) < 0) {
         enum talus_status status = hdf5_error(error, "write", file->path);
-        hdf5_abandon(file);
+        (void)unlink(file->aside);
         return status;
     }
-    file->file = H5I_INVALID_HID;
     return file_publish(file->aside, file->path, error);
 }
 
@@ -85,7 +92,7 @@ void hdf5_abandon(struct hdf5_file *file)
 
 enum talus_status hdf5_open(hid_t *file, const char *path, struct talus_error *error)
 {
-    silence_hdf5();
+    prepare_hdf5();
     *file = H5Fopen(path, H5F_ACC_RDONLY, H5P_DEFAULT);
     return *file < 0 ? hdf5_error(error, "open", path) : TALUS_OK;
 }
@@ -104,7 +111,7 @@ static hid_t dataset_properties(const struct hdf5_array *array)
     if (properties < 0)
         return properties;
     herr_t result = H5Pset_obj_track_times(properties, 0);
-    if (array->packing == HDF5_PACKED && array->count > 0) {
+    if (array->packing == HDF5_PACKED && array->count * array->components >= PACKED_VALUES_MIN) {
         hsize_t chunk[2] = {array->count < CHUNK_ROWS ? array->count : CHUNK_ROWS,
                             array->components};
         if (H5Pset_chunk(properties, array->components > 1 ? 2 : 1, chunk) < 0 ||

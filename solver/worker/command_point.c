@@ -81,7 +81,7 @@ static int exit_code(enum talus_status status)
     }
 }
 
-static enum talus_status run_point(const struct scene_point *point)
+static enum talus_status job_point(const struct scene_point *point)
 {
     const struct material *material = material_table[point->material.model_index];
     struct printer printer = {.material = material};
@@ -111,7 +111,7 @@ int command_point(int argument_count, char **arguments)
     }
     enum talus_status status = scene_point_read_file(arguments[1], &point, &issues);
     if (status == TALUS_OK) {
-        status = run_point(&point);
+        status = job_point(&point);
         scene_point_release(&point);
     } else {
         print_issues(&issues);

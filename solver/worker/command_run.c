@@ -1,0 +1,103 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+#include "base/protocol.h"
+#include "worker/command.h"
+#include "worker/job_run.h"
+
+#include <errno.h>
+#include <getopt.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { THREADS_MAX = 1024, ATTEMPT_MAX = 1 << 20 };
+
+static bool read_count(const char *text, int maximum, int *value)
+{
+    char *end = NULL;
+    errno = 0;
+    long number = strtol(text, &end, 10);
+    if (errno != 0 || *text == '\0' || *end != '\0' || number < 1 || number > maximum)
+        return false;
+    *value = (int)number;
+    return true;
+}
+
+static bool read_seconds(const char *text, double *value)
+{
+    char *end = NULL;
+    *value = strtod(text, &end);
+    return *text != '\0' && *end == '\0' && isfinite(*value) && *value > 0.0;
+}
+
+static bool read_option(struct job_options *options, int letter, const char *value)
+{
+    switch (letter) {
+    case 'o':
+        options->folder = value;
+        return *value != '\0';
+    case 't':
+        return read_count(value, THREADS_MAX, &options->threads);
+    case 'a':
+        return read_count(value, ATTEMPT_MAX, &options->attempt);
+    case 'w':
+        return read_seconds(value, &options->wall_seconds);
+    case 'r':
+        options->resume = true;
+        return true;
+    case 'q':
+        options->quiet = true;
+        return true;
+    default:
+        return false;
+    }
+}
+
+static bool read_options(int argument_count, char **arguments, struct job_options *options)
+{
+    static const struct option known[] = {{"out", required_argument, NULL, 'o'},
+                                          {"threads", required_argument, NULL, 't'},
+                                          {"attempt", required_argument, NULL, 'a'},
+                                          {"wall-seconds", required_argument, NULL, 'w'},
+                                          {"resume", no_argument, NULL, 'r'},
+                                          {"quiet", no_argument, NULL, 'q'},
+                                          {NULL, 0, NULL, 0}};
+    int letter = 0;
+    while ((letter = getopt_long(argument_count, arguments, "", known, NULL)) != -1) {
+        if (!read_option(options, letter, optarg)) {
+            if (letter != '?')
+                (void)fprintf(stderr, "talus-worker run: '%s' is not allowed here\n", optarg);
+            return false;
+        }
+    }
+    if (optind + 1 != argument_count || options->folder == NULL) {
+        (void)fputs("usage: talus-worker run SCENE.json --out DIR [--threads N] [--attempt A] "
+                    "[--resume] [--wall-seconds S] [--quiet]\n",
+                    stderr);
+        return false;
+    }
+    options->scene_path = arguments[optind];
+    return true;
+}
+
+int command_run(int argument_count, char **arguments)
+{
+    struct job_options options = {.threads = 1};
+    if (!read_options(argument_count, arguments, &options))
+        return PROTOCOL_EXIT_OTHER;
+    struct talus_error error = {.status = TALUS_OK};
+    struct job_run run = {.options = &options,
+                          .control = {.descriptor = -1},
+                          .lock = {.descriptor = -1},
+                          .events = {.descriptor = -1},
+                          .log = {.descriptor = -1},
+                          .history = {.descriptor = -1}};
+    enum talus_status status = control_open(&run.control, &error);
+    if (status == TALUS_OK)
+        status = job_start(&run, &error);
+    if (status == TALUS_OK)
+        status = job_loop(&run, &error);
+    int exit_code = job_end(&run, status, &error);
+    job_release(&run);
+    return exit_code;
+}

@@ -1,0 +1,158 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+#include "worker/job_run.h"
+
+#include <stdio.h>
+
+/* Seconds between history events; between progress lines where nobody watches. */
+static const double HISTORY_INTERVAL = 0.25;
+static const double PRINT_INTERVAL = 10.0, PRINT_INTERVAL_TERMINAL = 0.25;
+/* Tables are replaced at checkpoints as long as that costs less than this share of the time. */
+static const double TABLES_SHARE = 0.05;
+/* So many warnings are passed on, then one that says so. */
+enum { WARNING_MAX = 200 };
+
+enum talus_status job_pass_warnings(struct job_run *run, struct talus_error *error)
+{
+    struct talus_warning warning;
+    while (talus_simulation_take_warning(run->simulation, &warning)) {
+        enum talus_status status = TALUS_OK;
+        run->warning_count++;
+        if (run->warning_count == WARNING_MAX)
+            status = job_warn(run, "too_many_warnings", "", "further warnings are left out", error);
+        else if (run->warning_count < WARNING_MAX)
+            status = job_warn(run, warning.code, warning.pointer, warning.text, error);
+        if (status != TALUS_OK)
+            return status;
+    }
+    return TALUS_OK;
+}
+
+enum talus_status job_announce_history(struct job_run *run, struct talus_error *error)
+{
+    if (run->announced)
+        return TALUS_OK;
+    enum talus_status status = history_flush(&run->history, error);
+    if (status != TALUS_OK)
+        return status;
+    run->announced = true;
+    return event_write(&run->events, PROTOCOL_HISTORY,
+                       json_pack("{s:I}", "rows", (json_int_t)run->history.row_count), error);
+}
+
+static enum talus_status move_end(struct job_run *run, double end_time, struct talus_error *error)
+{
+    struct talus_simulation_state state;
+    struct talus_error refusal = {.status = TALUS_OK};
+    char text[200];
+    talus_simulation_get_state(run->simulation, &state);
+    if (end_time == state.duration)
+        return TALUS_OK;
+    enum talus_status status = talus_simulation_set_duration(run->simulation, end_time, &refusal);
+    if (status == TALUS_INVALID)
+        return job_warn(run, "control", "", refusal.text, error);
+    if (status != TALUS_OK) {
+        *error = refusal;
+        return status;
+    }
+    run->counters.steered = true;
+    (void)snprintf(text, sizeof text, "the end is moved from %g s to %g s", state.duration,
+                   end_time);
+    return job_inform(run, text, error);
+}
+
+enum talus_status job_steer(struct job_run *run, bool at_start, struct talus_error *error)
+{
+    struct control_orders orders;
+    struct talus_error mistake = {.status = TALUS_OK};
+    enum talus_status status = control_read(run->options->folder, &orders, &mistake);
+    if (status != TALUS_OK)
+        return job_warn(run, "control", "", mistake.text, error);
+    if (orders.end_time_given)
+        status = move_end(run, orders.end_time, error);
+    if (status == TALUS_OK && orders.frame_now && !at_start)
+        status = job_take_frame(run, error);
+    if (status == TALUS_OK && orders.checkpoint_now && !at_start)
+        status = job_write_checkpoint(run, error);
+    return status;
+}
+
+/* The interval between progress events, such that a run writes under 5,000 whatever it does: its
+ * expected wall clock over 4,000, and doubled with every further 100 beyond those. */
+static double progress_interval(const struct job_run *run, double now)
+{
+    struct talus_simulation_state state;
+    talus_simulation_get_state(run->simulation, &state);
+    double done = state.time - run->clock.start_time;
+    double share = done / (state.duration - run->clock.start_time);
+    double interval = share > 0.0 ? (now - run->clock.start) / share / 4000.0 : 1.0;
+    if (!(interval > 1.0))
+        interval = 1.0;
+    for (uint64_t count = 4000; count < run->counters.progress_count; count += 100)
+        interval *= 2.0;
+    return interval;
+}
+
+static enum talus_status keep_events(struct job_run *run, double now, struct talus_error *error)
+{
+    enum talus_status status = job_pass_warnings(run, error);
+    double interval = progress_interval(run, now);
+    if (status == TALUS_OK && now - run->clock.history >= HISTORY_INTERVAL * interval) {
+        run->clock.history = now;
+        status = job_announce_history(run, error);
+    }
+    if (status == TALUS_OK && now - run->clock.progress >= interval) {
+        run->clock.progress = now;
+        status = job_report_progress(run, now, error);
+    }
+    double print_interval = run->log.terminal ? PRINT_INTERVAL_TERMINAL : PRINT_INTERVAL;
+    if (status == TALUS_OK && now - run->clock.printed >= print_interval) {
+        run->clock.printed = now;
+        job_print_progress(run, now, false);
+    }
+    return status;
+}
+
+static enum talus_status keep_checkpoints(struct job_run *run, double now,
+                                          struct talus_error *error)
+{
+    double every = run->scene.output.checkpoint_every;
+    if (!(every > 0.0) || now - run->clock.checkpoint < every)
+        return TALUS_OK;
+    enum talus_status status = job_write_checkpoint(run, error);
+    double since = now - run->clock.tables;
+    if (status == TALUS_OK && run->clock.tables_cost <= TABLES_SHARE * since) {
+        double begin = job_now();
+        status = job_write_tables(run, NULL, error);
+        run->clock.tables = begin;
+        run->clock.tables_cost = job_now() - begin;
+    }
+    return status;
+}
+
+static enum talus_status stop(struct job_run *run, enum talus_status reason, const char *code,
+                              const char *text, struct talus_error *error)
+{
+    enum talus_status status = job_write_checkpoint(run, error);
+    return status != TALUS_OK ? status : talus_error_set(error, reason, code, "", "%s", text);
+}
+
+enum talus_status job_attend(struct job_run *run, double now, struct talus_error *error)
+{
+    run->clock.attended = now;
+    struct control_request request = control_poll(&run->control);
+    double limit = run->options->wall_seconds;
+    if (request.stop)
+        return stop(run, TALUS_CANCELLED, "cancelled",
+                    "stopped on request; --resume goes on from here", error);
+    if (limit > 0.0 && now - run->clock.start > limit)
+        return stop(run, TALUS_LIMIT, "time_limit",
+                    "the wall clock limit is reached; --resume goes on from here", error);
+    enum talus_status status = TALUS_OK;
+    if (request.look)
+        status = job_steer(run, false, error);
+    if (status == TALUS_OK)
+        status = keep_events(run, now, error);
+    if (status == TALUS_OK)
+        status = keep_checkpoints(run, now, error);
+    return status;
+}
