@@ -1,0 +1,45 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* One attempt of a job under way: what is known of its worker, and how it ended. */
+#ifndef TALUS_ATTEMPT_H
+#define TALUS_ATTEMPT_H
+
+#include "event_log.h"
+#include "job.h"
+
+#include <jansson.h>
+#include <stdbool.h>
+#include <sys/types.h>
+
+/* Owns texts, JSON and the tail. */
+struct attempt {
+    char *id, *folder;
+    int64_t number, threads, disk_limit;
+    double wall_limit;  /* [s], 0: none */
+    double wall_before; /* [s] used by earlier attempts */
+    double started;     /* [s since 1970] */
+    bool other_boot;    /* it was started before the machine was */
+    pid_t pid;          /* 0: adopted, known by its lock only */
+    bool ended;         /* our child has ended with wait_status */
+    int wait_status;
+    bool cancel_requested;
+    const char *stop_reason; /* why we stopped it ("time_limit", "disk_limit"), or NULL */
+    double stop_deadline;    /* when SIGTERM becomes SIGKILL (monotonic); 0: not stopped */
+    double next_disk_check;
+    struct event_tail tail;
+    bool worker_started; /* its `started` line is there */
+    json_t *progress;    /* the last one */
+    json_t *last;        /* `finished` or `failed` */
+    struct attempt *next;
+};
+
+/* A new attempt of a job whose row says `running`. NULL without memory. */
+struct attempt *attempt_create(const struct job *job, const char *folder, const char *boot);
+void attempt_destroy(struct attempt *attempt);
+/* Follows the event file. */
+void attempt_read(struct attempt *attempt);
+/* How it ended, once its processes are gone. *outcome borrows from the attempt and from *receipt
+ * (new reference or NULL) and detail. */
+void attempt_outcome(const struct attempt *attempt, struct job_outcome *outcome, json_t **receipt,
+                     char detail[512]);
+
+#endif

@@ -1,0 +1,254 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+#include "events.h"
+
+#include "moment.h"
+#include "service.h"
+#include "waits.h"
+
+#include <errno.h>
+#include <pthread.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+#include <unistd.h>
+
+static const double tick_seconds = 0.1;
+static const double comment_seconds = 15;
+
+/* One reader. The events thread owns the stream; `ready` and the flags belong to the mutex. */
+struct subscription {
+    struct events *events;
+    struct MHD_Connection *connection;
+    struct event_stream stream;
+    struct text ready; /* for the HTTP thread */
+    size_t sent;       /* bytes of it that are gone */
+    double last_sent;  /* when the reader last took something */
+    bool suspended, ended, closed;
+    struct subscription *next;
+};
+
+struct events {
+    struct service *service;
+    pthread_mutex_t mutex;
+    pthread_cond_t wake;
+    pthread_t thread;
+    struct subscription *first;
+    bool woken, ending, stopping;
+};
+
+static ssize_t subscription_read(void *context, uint64_t position, char *buffer, size_t size)
+{
+    struct subscription *own = context;
+    struct events *events = own->events;
+    (void)position;
+    (void)pthread_mutex_lock(&events->mutex);
+    size_t left = own->ready.length - own->sent;
+    ssize_t result = 0;
+    if (left > 0) {
+        size_t length = left < size ? left : size;
+        memcpy(buffer, own->ready.data + own->sent, length);
+        own->sent += length;
+        own->last_sent = moment_monotonic();
+        result = (ssize_t)length;
+        if (own->sent == own->ready.length) {
+            text_drop(&own->ready, own->sent);
+            own->sent = 0;
+            events->woken = true;
+            (void)pthread_cond_signal(&events->wake);
+        }
+    } else if (own->ended) {
+        result = MHD_CONTENT_READER_END_OF_STREAM;
+    } else {
+        own->suspended = true;
+        MHD_suspend_connection(own->connection);
+    }
+    (void)pthread_mutex_unlock(&events->mutex);
+    return result;
+}
+
+static void subscription_free(void *context)
+{
+    struct subscription *own = context;
+    (void)pthread_mutex_lock(&own->events->mutex);
+    own->closed = true;
+    own->events->woken = true;
+    (void)pthread_cond_signal(&own->events->wake);
+    (void)pthread_mutex_unlock(&own->events->mutex);
+}
+
+/* Fills a stream whose reader has taken all; called without the mutex. */
+static void subscription_fill(struct subscription *own, bool idle, bool stalled)
+{
+    struct event_stream *stream = &own->stream;
+    if (idle && !stream->done)
+        (void)event_stream_fill(stream);
+    if (stalled)
+        event_stream_skip(stream);
+}
+
+static void subscription_service(struct subscription *own, double now)
+{
+    struct events *events = own->events;
+    const struct config *config = events->service->config;
+    (void)pthread_mutex_lock(&events->mutex);
+    bool idle = own->ready.length == 0 && !own->ended && !own->closed;
+    double silent = now - own->last_sent;
+    bool stalled = own->ready.length > 0 && !own->closed && !own->ended;
+    (void)pthread_mutex_unlock(&events->mutex);
+    stalled = stalled && silent > config->gap_seconds &&
+              (double)event_stream_backlog(&own->stream) > config->gap_bytes;
+    if (idle || stalled)
+        subscription_fill(own, idle, stalled);
+    if (idle && own->stream.out.length == 0 && silent >= comment_seconds)
+        text_add_string(&own->stream.out, ": still here\n\n");
+    (void)pthread_mutex_lock(&events->mutex);
+    bool produced = own->stream.out.length > 0;
+    if (produced)
+        text_add(&own->ready, own->stream.out.data, own->stream.out.length);
+    text_drop(&own->stream.out, own->stream.out.length);
+    if (own->stream.done || own->ready.failed || own->stream.out.failed || events->ending)
+        own->ended = true;
+    if (own->suspended && (own->ready.length > 0 || own->ended) && !own->closed) {
+        own->suspended = false;
+        if (idle)
+            own->last_sent = now;
+        MHD_resume_connection(own->connection);
+    }
+    (void)pthread_mutex_unlock(&events->mutex);
+}
+
+static void subscriptions_sweep(struct events *events)
+{
+    struct subscription **link = &events->first;
+    while (*link != NULL) {
+        struct subscription *own = *link;
+        if (!own->closed) {
+            link = &own->next;
+            continue;
+        }
+        *link = own->next;
+        event_stream_close(&own->stream);
+        text_release(&own->ready);
+        free(own);
+    }
+}
+
+static void events_wait(struct events *events)
+{
+    struct timespec until;
+    (void)clock_gettime(CLOCK_REALTIME, &until);
+    until.tv_nsec += (long)(tick_seconds * 1e9);
+    if (until.tv_nsec >= 1000000000L) {
+        until.tv_nsec -= 1000000000L;
+        until.tv_sec++;
+    }
+    int waited = 0;
+    while (!events->woken && !events->stopping && waited != ETIMEDOUT)
+        waited = pthread_cond_timedwait(&events->wake, &events->mutex, &until);
+    events->woken = false;
+}
+
+static void *events_main(void *argument)
+{
+    struct events *events = argument;
+    (void)pthread_mutex_lock(&events->mutex);
+    while (!events->stopping) {
+        events_wait(events);
+        subscriptions_sweep(events);
+        struct subscription *first = events->first;
+        (void)pthread_mutex_unlock(&events->mutex);
+        /* Readers are only added at the head and only removed by this thread. */
+        double now = moment_monotonic();
+        for (struct subscription *own = first; own != NULL; own = own->next)
+            subscription_service(own, now);
+        waits_tick(events->service->waits);
+        (void)pthread_mutex_lock(&events->mutex);
+    }
+    subscriptions_sweep(events);
+    (void)pthread_mutex_unlock(&events->mutex);
+    return NULL;
+}
+
+enum talus_status events_create(struct events **result, struct service *service,
+                                struct talus_error *error)
+{
+    struct events *events = calloc(1, sizeof *events);
+    *result = events;
+    if (events == NULL)
+        return talus_error_set(error, TALUS_MEMORY, "memory", "", "out of memory");
+    events->service = service;
+    (void)pthread_mutex_init(&events->mutex, NULL);
+    (void)pthread_cond_init(&events->wake, NULL);
+    if (pthread_create(&events->thread, NULL, events_main, events) == 0)
+        return TALUS_OK;
+    free(events);
+    *result = NULL;
+    return talus_error_set(error, TALUS_INTERNAL, "thread", "", "cannot start a thread");
+}
+
+void events_destroy(struct events *events)
+{
+    if (events == NULL)
+        return;
+    (void)pthread_mutex_lock(&events->mutex);
+    events->stopping = true;
+    (void)pthread_cond_signal(&events->wake);
+    (void)pthread_mutex_unlock(&events->mutex);
+    (void)pthread_join(events->thread, NULL);
+    (void)pthread_cond_destroy(&events->wake);
+    (void)pthread_mutex_destroy(&events->mutex);
+    free(events);
+}
+
+void events_subscribe(struct events *events, struct request *request, struct event_stream *stream)
+{
+    struct subscription *own = calloc(1, sizeof *own);
+    struct MHD_Response *response =
+        own == NULL ? NULL
+                    : MHD_create_response_from_callback(MHD_SIZE_UNKNOWN, 16384, subscription_read,
+                                                        own, subscription_free);
+    if (response == NULL) {
+        free(own);
+        event_stream_close(stream);
+        return;
+    }
+    own->events = events;
+    own->connection = request->connection;
+    own->stream = *stream;
+    own->last_sent = moment_monotonic();
+    /* Also pushes the header fields out. */
+    text_add_string(&own->ready, "retry: 1000\n\n");
+    reply_stream(&request->reply, response);
+    (void)pthread_mutex_lock(&events->mutex);
+    own->ended = events->ending;
+    own->next = events->first;
+    events->first = own;
+    events->woken = true;
+    (void)pthread_cond_signal(&events->wake);
+    (void)pthread_mutex_unlock(&events->mutex);
+}
+
+void events_wake(struct events *events)
+{
+    (void)pthread_mutex_lock(&events->mutex);
+    events->woken = true;
+    (void)pthread_cond_signal(&events->wake);
+    (void)pthread_mutex_unlock(&events->mutex);
+}
+
+void events_end(struct events *events)
+{
+    bool suspended = true;
+    while (suspended) {
+        (void)pthread_mutex_lock(&events->mutex);
+        events->ending = true;
+        events->woken = true;
+        (void)pthread_cond_signal(&events->wake);
+        suspended = false;
+        for (struct subscription *own = events->first; own != NULL; own = own->next)
+            suspended = suspended || !own->ended || own->suspended;
+        (void)pthread_mutex_unlock(&events->mutex);
+        if (suspended)
+            (void)usleep(1000);
+    }
+}

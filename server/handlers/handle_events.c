@@ -1,0 +1,46 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* GET /v1/jobs/ID/events */
+#include "events.h"
+#include "request.h"
+#include "service.h"
+
+#include <stdlib.h>
+
+enum handled handle_job_events(struct request *request)
+{
+    static const char *const allowed[] = {"after", NULL};
+    struct talus_error error = {0};
+    struct event_stream stream;
+    struct event_id after = {0};
+    if (!request_query_check(request, allowed))
+        return HANDLED;
+    const char *id = request_header(request, "Last-Event-ID");
+    if (id == NULL)
+        id = target_query(&request->target, "after");
+    if (id != NULL && id[0] != '\0' && !event_id_parse(id, &after)) {
+        reply_problem(&request->reply, MHD_HTTP_UNPROCESSABLE_CONTENT, "event_id", request->raw,
+                      NULL, "this is not the id of an event");
+        return HANDLED;
+    }
+    char *folder = request_folder(request);
+    if (folder == NULL)
+        return HANDLED;
+    if (event_stream_open(&stream, folder, after, &error) != TALUS_OK) {
+        if (error.status == TALUS_INVALID)
+            reply_problem(&request->reply, MHD_HTTP_UNPROCESSABLE_CONTENT, "event_id", request->raw,
+                          NULL, "%s", error.text);
+        else
+            reply_error(&request->reply, request->raw, &error);
+    } else {
+        (void)event_stream_fill(&stream);
+        if (stream.done && stream.out.length == 0) {
+            /* Tells a browser's EventSource not to connect again. */
+            reply_empty(&request->reply, MHD_HTTP_NO_CONTENT);
+            event_stream_close(&stream);
+        } else {
+            events_subscribe(request->service->events, request, &stream);
+        }
+    }
+    free(folder);
+    return HANDLED;
+}

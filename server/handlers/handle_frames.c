@@ -1,0 +1,190 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* GET /v1/jobs/ID/frames and /frames/N.png; pictures are drawn by a helper and kept in the job's
+ * folder. */
+#include "folder.h"
+#include "frames.h"
+#include "helper.h"
+#include "request.h"
+#include "service.h"
+
+#include <errno.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+enum { WIDTH_MIN = 64, WIDTH_MAX = 4096, WIDTH_DEFAULT = 800 };
+static const char pictures_folder[] = ".pictures";
+
+/* What is to be drawn; texts are borrowed. */
+struct picture {
+    json_int_t frame;
+    const char *field, *style;
+    int width;
+    char name[256]; /* of the file in the pictures' folder */
+};
+
+static void frames_unreadable(struct request *request)
+{
+    const struct talus_error error = {.code = "io", .text = "the events cannot be read"};
+    reply_error(&request->reply, request->raw, &error);
+}
+
+enum handled handle_frame_list(struct request *request)
+{
+    static const char *const allowed[] = {NULL};
+    if (!request_query_check(request, allowed))
+        return HANDLED;
+    char *folder = request_folder(request);
+    if (folder == NULL)
+        return HANDLED;
+    json_t *frames = frames_list(folder);
+    free(folder);
+    if (frames == NULL)
+        frames_unreadable(request);
+    else
+        reply_json(&request->reply, MHD_HTTP_OK, frames);
+    return HANDLED;
+}
+
+/* "12.png" -> 12; -1 for anything else. */
+static json_int_t frame_number(const char *name)
+{
+    char *end = NULL;
+    if (name[0] < '0' || name[0] > '9')
+        return -1;
+    errno = 0;
+    long long number = strtoll(name, &end, 10);
+    return errno == 0 && strcmp(end, ".png") == 0 ? number : -1;
+}
+
+static const json_t *frame_find(const json_t *frames, json_int_t number)
+{
+    size_t index;
+    json_t *frame;
+    json_array_foreach(frames, index, frame)
+    {
+        if (json_integer_value(json_object_get(frame, "n")) == number)
+            return frame;
+    }
+    return NULL;
+}
+
+/* Fills in what the query leaves open. False: the reply is made. */
+static bool picture_describe(struct request *request, const json_t *frame, struct picture *picture)
+{
+    double width;
+    const json_t *fields = json_object_get(frame, "fields");
+    const json_t *sha256 = json_object_get(frame, "sha256");
+    if (!request_query_number(request, "width", WIDTH_MIN, WIDTH_MAX, WIDTH_DEFAULT, &width))
+        return false;
+    picture->width = (int)width;
+    picture->field = target_query(&request->target, "field");
+    if (picture->field == NULL)
+        picture->field = json_string_value(json_array_get(fields, 0));
+    if (picture->field == NULL)
+        picture->field = "velocity";
+    picture->style = target_query(&request->target, "style");
+    if (picture->style == NULL)
+        picture->style = "points";
+    if (strspn(picture->field, "abcdefghijklmnopqrstuvwxyz0123456789_.") !=
+            strlen(picture->field) ||
+        strlen(picture->field) > 64 ||
+        (strcmp(picture->style, "points") != 0 && strcmp(picture->style, "voxels") != 0)) {
+        reply_problem(&request->reply, MHD_HTTP_UNPROCESSABLE_CONTENT, "query", request->raw, NULL,
+                      "a field of the frame and the style points or voxels are wanted");
+        return false;
+    }
+    const char *hash = json_string_value(sha256);
+    (void)snprintf(picture->name, sizeof picture->name, "%lld-%.16s-%s-%s-%d.png",
+                   (long long)picture->frame, hash == NULL ? "" : hash, picture->field,
+                   picture->style, picture->width);
+    return true;
+}
+
+/* Has a picture drawn aside and put in its place. False: the reply is made. */
+static bool picture_draw(struct request *request, const char *folder, const char *pictures,
+                         const struct picture *picture)
+{
+    struct talus_error error = {0};
+    json_t *answer = NULL;
+    char aside[320];
+    (void)snprintf(aside, sizeof aside, "%s.%p.tmp", picture->name, (void *)request);
+    char *output = folder_join(pictures, aside), *path = folder_join(pictures, picture->name);
+    json_t *question =
+        json_pack("{s:s, s:s, s:I, s:s, s:i, s:s, s:s}", "op", "render", "folder", folder, "frame",
+                  picture->frame, "field", picture->field, "width", picture->width, "style",
+                  picture->style, "output", output == NULL ? "" : output);
+    enum talus_status status =
+        output == NULL || path == NULL || question == NULL
+            ? talus_error_set(&error, TALUS_MEMORY, "memory", "", "out of memory")
+            : folder_make(pictures, &error);
+    if (status == TALUS_OK)
+        status = helper_ask(request->helper, question, request->service->config->render_seconds,
+                            &answer, &error);
+    bool drawn = status == TALUS_OK && json_is_true(json_object_get(answer, "ok"));
+    if (drawn && rename(output, path) != 0) {
+        drawn = false;
+        status = talus_error_set(&error, TALUS_IO, "io", "", "the picture was not written");
+    }
+    if (status != TALUS_OK)
+        reply_error(&request->reply, request->raw, &error);
+    else if (!drawn)
+        reply_problem(&request->reply, MHD_HTTP_UNPROCESSABLE_CONTENT, "picture", request->raw,
+                      json_incref(json_object_get(answer, "errors")),
+                      "the picture cannot be drawn");
+    if (!drawn && output != NULL)
+        (void)unlink(output);
+    json_decref(question);
+    json_decref(answer);
+    free(output);
+    free(path);
+    return drawn;
+}
+
+static void picture_reply(struct request *request, const char *folder,
+                          const struct picture *picture)
+{
+    struct stat information;
+    char *pictures = folder_join(folder, pictures_folder);
+    if (pictures == NULL)
+        return;
+    int descriptor = folder_open(pictures, picture->name);
+    if (descriptor < 0 && picture_draw(request, folder, pictures, picture))
+        descriptor = folder_open(pictures, picture->name);
+    free(pictures);
+    if (descriptor < 0) {
+        if (request->reply.response == NULL)
+            frames_unreadable(request);
+        return;
+    }
+    if (fstat(descriptor, &information) != 0)
+        information.st_size = 0;
+    reply_file(&request->reply, MHD_HTTP_OK, "image/png", descriptor, 0,
+               (uint64_t)information.st_size);
+    reply_header(&request->reply, MHD_HTTP_HEADER_CACHE_CONTROL, "no-cache");
+}
+
+enum handled handle_frame_picture(struct request *request)
+{
+    static const char *const allowed[] = {"field", "width", "style", NULL};
+    struct picture picture = {.frame = frame_number(request->rest)};
+    if (!request_query_check(request, allowed))
+        return HANDLED;
+    char *folder = request_folder(request);
+    if (folder == NULL)
+        return HANDLED;
+    json_t *frames = frames_list(folder);
+    const json_t *frame = frame_find(frames, picture.frame);
+    if (frames == NULL)
+        frames_unreadable(request);
+    else if (picture.frame < 0 || frame == NULL)
+        reply_problem(&request->reply, MHD_HTTP_NOT_FOUND, "not_found", request->raw, NULL,
+                      "the job has no frame %s", request->rest);
+    else if (picture_describe(request, frame, &picture))
+        picture_reply(request, folder, &picture);
+    json_decref(frames);
+    free(folder);
+    return HANDLED;
+}

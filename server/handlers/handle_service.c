@@ -1,0 +1,74 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* Version, liveness, readiness, and the JSON Schema of scenes. */
+#include "helper.h"
+#include "request.h"
+#include "service.h"
+#include "talus/version.h"
+
+#include <sys/statvfs.h>
+
+enum handled handle_version(struct request *request)
+{
+    reply_json(&request->reply, MHD_HTTP_OK,
+               json_pack("{s:s, s:s, s:s, s:s}", "name", "talus", "version", TALUS_VERSION, "build",
+                         talus_build(), "api", "v1"));
+    return HANDLED;
+}
+
+enum handled handle_healthz(struct request *request)
+{
+    reply_json(&request->reply, MHD_HTTP_OK, json_pack("{s:s}", "status", "ok"));
+    return HANDLED;
+}
+
+enum handled handle_readyz(struct request *request)
+{
+    struct service *service = request->service;
+    struct statvfs disk;
+    const char *reason = NULL;
+    if (atomic_load(&service->draining))
+        reason = "the daemon is stopping";
+    else if (!store_healthy(service->store))
+        reason = "the store does not take writes";
+    else if (statvfs(service->state, &disk) != 0 ||
+             (double)disk.f_bavail * (double)disk.f_frsize < service->config->disk_reserve_bytes)
+        reason = "the disk is nearly full";
+    if (reason == NULL)
+        reply_json(&request->reply, MHD_HTTP_OK, json_pack("{s:s}", "status", "ready"));
+    else
+        reply_problem(&request->reply, MHD_HTTP_SERVICE_UNAVAILABLE, "not_ready", request->raw,
+                      NULL, "%s", reason);
+    return HANDLED;
+}
+
+/* The schema that a helper tells, or NULL with the reply made; new reference. */
+static json_t *schema_ask(struct request *request)
+{
+    struct talus_error error = {0};
+    json_t *answer = NULL;
+    json_t *question = json_pack("{s:s}", "op", "schema");
+    enum talus_status status = helper_ask(
+        request->helper, question, request->service->config->helper_seconds, &answer, &error);
+    json_decref(question);
+    json_t *schema = json_incref(json_object_get(answer, "schema"));
+    json_decref(answer);
+    if (status != TALUS_OK)
+        reply_error(&request->reply, request->raw, &error);
+    else if (schema == NULL)
+        reply_problem(&request->reply, MHD_HTTP_SERVICE_UNAVAILABLE, "schema", request->raw, NULL,
+                      "the worker program tells no schema");
+    return schema;
+}
+
+enum handled handle_scene_schema(struct request *request)
+{
+    struct service *service = request->service;
+    (void)pthread_mutex_lock(&service->schema_mutex);
+    if (service->schema == NULL)
+        service->schema = schema_ask(request);
+    json_t *schema = service->schema == NULL ? NULL : json_deep_copy(service->schema);
+    (void)pthread_mutex_unlock(&service->schema_mutex);
+    if (schema != NULL)
+        reply_document(&request->reply, MHD_HTTP_OK, "application/schema+json", schema);
+    return HANDLED;
+}

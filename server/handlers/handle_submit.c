@@ -1,0 +1,274 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* POST /v1/jobs and POST /v1/forecast: a scene is checked by a helper before it becomes a job. */
+#include "body.h"
+#include "checksum.h"
+#include "helper.h"
+#include "jobs.h"
+#include "request.h"
+#include "submission.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+#include <sys/statvfs.h>
+
+/* With `threads` 0 every so many particles get a thread: below that, threads cost more than they
+ * give. */
+static const double particles_per_thread = 20000;
+enum { KEY_BYTES_MAX = 255 };
+
+/* What a submission has become so far. */
+struct submission {
+    json_t *body, *answer, *errors;
+    struct job job;
+};
+
+static void submission_release(struct submission *submission)
+{
+    json_decref(submission->body);
+    json_decref(submission->answer);
+    json_decref(submission->errors);
+    job_release(&submission->job);
+}
+
+/* Adds the helper's errors, whose pointers go into the scene. */
+static void errors_prefix(json_t *errors, const json_t *found)
+{
+    size_t index;
+    json_t *issue;
+    json_array_foreach(found, index, issue)
+    {
+        const char *pointer = json_string_value(json_object_get(issue, "pointer"));
+        json_t *copy = json_copy(issue);
+        json_t *full = json_sprintf("/scene%s", pointer == NULL ? "" : pointer);
+        (void)json_object_set_new(copy, "pointer", full);
+        (void)json_array_append_new(errors, copy);
+    }
+}
+
+static void problem_invalid(struct request *request, struct submission *submission)
+{
+    size_t count = json_array_size(submission->errors);
+    reply_problem(&request->reply, MHD_HTTP_UNPROCESSABLE_CONTENT, "invalid", request->raw,
+                  json_incref(submission->errors), "the request has %zu mistake%s", count,
+                  count == 1 ? "" : "s");
+}
+
+/* The number of threads that the forecast says pay. */
+static int64_t threads_that_pay(const struct submission *submission, double workers)
+{
+    const json_t *forecast = json_object_get(submission->answer, "forecast");
+    const json_t *threads = json_object_get(forecast, "threads");
+    double wanted =
+        json_is_number(threads)
+            ? json_number_value(threads)
+            : json_number_value(json_object_get(forecast, "particles")) / particles_per_thread;
+    wanted = floor(wanted);
+    return (int64_t)(wanted < 1 ? 1 : wanted > workers ? workers : wanted);
+}
+
+static enum talus_status answer_take(struct submission *submission, struct talus_error *error)
+{
+    const json_t *answer = submission->answer;
+    struct job *job = &submission->job;
+    enum talus_status status =
+        job_json_set(&job->forecast, json_object_get(answer, "forecast"), error);
+    if (status == TALUS_OK)
+        status = job_json_set(&job->advice, json_object_get(answer, "advice"), error);
+    if (status == TALUS_OK)
+        status = job_json_set(&job->warnings, json_object_get(answer, "warnings"), error);
+    if (status == TALUS_OK)
+        status = job_text_set(&job->scene_hash, json_string_value(json_object_get(answer, "hash")),
+                              error);
+    return status;
+}
+
+/* Asks the helper about the scene. False: the reply is made. */
+static bool scene_check(struct request *request, struct submission *submission, const json_t *scene)
+{
+    struct talus_error error = {0};
+    double seconds = request->service->config->helper_seconds;
+    json_int_t threads = submission->job.threads < 1 ? 1 : submission->job.threads;
+    json_t *question =
+        json_pack("{s:s, s:O, s:I}", "op", "check", "scene", scene, "threads", threads);
+    enum talus_status status =
+        question == NULL
+            ? talus_error_set(&error, TALUS_MEMORY, "memory", "", "out of memory")
+            : helper_ask(request->helper, question, seconds, &submission->answer, &error);
+    json_decref(question);
+    if (status == TALUS_LIMIT) {
+        issue_add(submission->errors, "/scene", "too_costly", NULL, NULL, "%s", error.text);
+    } else if (status != TALUS_OK) {
+        reply_error(&request->reply, request->raw, &error);
+        return false;
+    } else if (!json_is_true(json_object_get(submission->answer, "ok"))) {
+        errors_prefix(submission->errors, json_object_get(submission->answer, "errors"));
+        if (json_array_size(submission->errors) == 0)
+            issue_add(submission->errors, "/scene", "invalid", NULL, NULL, "the scene is refused");
+    }
+    return true;
+}
+
+/* Reads the body and has the scene checked. False: the reply is made. */
+static bool submission_check(struct request *request, struct submission *submission)
+{
+    static const char *const no_query[] = {NULL};
+    const json_t *scene = NULL;
+    struct talus_error error = {0};
+    double workers = request->service->config->workers;
+    if (!request_query_check(request, no_query))
+        return false;
+    submission->body = submission->body == NULL ? body_json(request) : submission->body;
+    if (submission->body == NULL)
+        return false;
+    submission_read(submission->body, (int64_t)workers, &submission->job, &scene,
+                    submission->errors);
+    if (scene != NULL && !scene_check(request, submission, scene))
+        return false;
+    if (json_array_size(submission->errors) > 0) {
+        problem_invalid(request, submission);
+        return false;
+    }
+    if (submission->job.threads == 0)
+        submission->job.threads = threads_that_pay(submission, workers);
+    if (answer_take(submission, &error) != TALUS_OK) {
+        reply_error(&request->reply, request->raw, &error);
+        return false;
+    }
+    return true;
+}
+
+static bool refused_while_draining(struct request *request)
+{
+    if (!atomic_load(&request->service->draining))
+        return false;
+    reply_problem(&request->reply, MHD_HTTP_SERVICE_UNAVAILABLE, "draining", request->raw, NULL,
+                  "the daemon is stopping; its jobs go on under the next one");
+    return true;
+}
+
+/* Whether the results would fit. False: the reply is made. */
+static bool disk_check(struct request *request, const struct submission *submission)
+{
+    struct statvfs disk;
+    const json_t *forecast = json_object_get(submission->answer, "forecast");
+    double wanted = json_number_value(json_object_get(forecast, "disk_bytes"));
+    if (statvfs(request->service->state, &disk) != 0)
+        return true;
+    double left = (double)disk.f_bavail * (double)disk.f_frsize -
+                  request->service->config->disk_reserve_bytes;
+    if (wanted <= left)
+        return true;
+    reply_problem(&request->reply, MHD_HTTP_INSUFFICIENT_STORAGE, "disk", request->raw, NULL,
+                  "the results need %.3g bytes and %.3g are free", wanted, left < 0 ? 0 : left);
+    return false;
+}
+
+static void reply_job(struct request *request, unsigned int status, const struct job *job,
+                      bool replayed)
+{
+    char location[128], etag[32];
+    (void)snprintf(location, sizeof location, "/v1/jobs/%s", job->id);
+    (void)snprintf(etag, sizeof etag, "\"%lld\"", (long long)job->revision);
+    reply_json(&request->reply, status, jobs_json(request->service, job));
+    reply_header(&request->reply, MHD_HTTP_HEADER_LOCATION, location);
+    reply_header(&request->reply, MHD_HTTP_HEADER_ETAG, etag);
+    if (replayed)
+        reply_header(&request->reply, "Idempotent-Replayed", "true");
+}
+
+/* Answers for a key that is known. */
+static void reply_known(struct request *request, enum store_insert known, const char *existing)
+{
+    struct talus_error error = {0};
+    struct job job = {0};
+    if (known == STORE_OTHER_BODY) {
+        reply_problem(&request->reply, MHD_HTTP_UNPROCESSABLE_CONTENT, "idempotency_key",
+                      request->raw, NULL, "this Idempotency-Key came with another body before");
+    } else if (known == STORE_QUEUE_FULL) {
+        reply_problem(&request->reply, MHD_HTTP_TOO_MANY_REQUESTS, "queue_full", request->raw, NULL,
+                      "%.0f jobs are queued already", request->service->config->queue_limit);
+    } else if (store_job_read(request->service->store, existing, &job, &error) == TALUS_OK) {
+        reply_job(request, MHD_HTTP_CREATED, &job, true);
+        job_release(&job);
+    } else {
+        reply_error(&request->reply, request->raw, &error);
+    }
+}
+
+/* Reads the Idempotency-Key; key->key stays NULL without one. False: the reply is made. */
+static bool key_read(struct request *request, const json_t *body, struct store_key *key,
+                     char checksum[CHECKSUM_SIZE])
+{
+    struct talus_error error = {0};
+    const char *value = request_header(request, "Idempotency-Key");
+    if (value == NULL)
+        return true;
+    if (value[0] == '\0' || strlen(value) > KEY_BYTES_MAX) {
+        reply_problem(&request->reply, MHD_HTTP_BAD_REQUEST, "idempotency_key", request->raw, NULL,
+                      "an Idempotency-Key has 1 to %d bytes", KEY_BYTES_MAX);
+        return false;
+    }
+    if (checksum_json(body, checksum, &error) != TALUS_OK) {
+        reply_error(&request->reply, request->raw, &error);
+        return false;
+    }
+    key->key = value;
+    key->body = checksum;
+    return true;
+}
+
+static void submit(struct request *request, struct submission *submission)
+{
+    struct service *service = request->service;
+    struct talus_error error = {0};
+    struct store_key key = {0};
+    char checksum[CHECKSUM_SIZE], existing[64];
+    enum store_insert known = STORE_INSERTED;
+    submission->body = body_json(request);
+    if (submission->body == NULL || !key_read(request, submission->body, &key, checksum))
+        return;
+    if (key.key != NULL &&
+        store_key_find(service->store, &key, &known, existing, &error) != TALUS_OK) {
+        reply_error(&request->reply, request->raw, &error);
+        return;
+    }
+    if (known != STORE_INSERTED) {
+        reply_known(request, known, existing);
+        return;
+    }
+    if (!submission_check(request, submission) || !disk_check(request, submission))
+        return;
+    const json_t *effective = json_object_get(submission->answer, "effective");
+    if (jobs_create(service, &submission->job, effective, key.key == NULL ? NULL : &key, &known,
+                    existing, &error) != TALUS_OK)
+        reply_error(&request->reply, request->raw, &error);
+    else if (known != STORE_INSERTED)
+        reply_known(request, known, existing);
+    else
+        reply_job(request, MHD_HTTP_CREATED, &submission->job, false);
+}
+
+enum handled handle_submit(struct request *request)
+{
+    struct submission submission = {.errors = json_array()};
+    if (!refused_while_draining(request))
+        submit(request, &submission);
+    submission_release(&submission);
+    return HANDLED;
+}
+
+enum handled handle_forecast(struct request *request)
+{
+    struct submission submission = {.errors = json_array()};
+    if (submission_check(request, &submission)) {
+        const json_t *answer = submission.answer;
+        json_t *reply = json_pack(
+            "{s:O*, s:O*, s:O*, s:O*}", "forecast", json_object_get(answer, "forecast"), "advice",
+            json_object_get(answer, "advice"), "warnings", json_object_get(answer, "warnings"),
+            "effective_scene", json_object_get(answer, "effective"));
+        reply_json(&request->reply, MHD_HTTP_OK, reply);
+    }
+    submission_release(&submission);
+    return HANDLED;
+}

@@ -1,0 +1,204 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+#include "http_checks.h"
+
+#include "service.h"
+
+#include <arpa/inet.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <strings.h>
+
+enum { TARGET_BYTES_MAX = 8192, FIELDS_BYTES_MAX = 16384 };
+
+/* What a walk over the header fields finds. */
+struct fields {
+    size_t bytes, host_count, length_count, encoding_count, type_count;
+    const char *host, *length, *encoding;
+    bool malformed;
+};
+
+/* token of RFC 9110, section 5.6.2 */
+static bool is_token(const char *text)
+{
+    if (text[0] == '\0')
+        return false;
+    for (; *text != '\0'; text++) {
+        bool letter = (*text >= 'a' && *text <= 'z') || (*text >= 'A' && *text <= 'Z') ||
+                      (*text >= '0' && *text <= '9');
+        if (!letter && strchr("!#$%&'*+-.^_`|~", *text) == NULL)
+            return false;
+    }
+    return true;
+}
+
+static bool has_control(const char *text)
+{
+    for (; *text != '\0'; text++) {
+        if (((unsigned char)*text < 0x20 && *text != '\t') || *text == 0x7f)
+            return true;
+    }
+    return false;
+}
+
+static enum MHD_Result field_visit(void *context, enum MHD_ValueKind kind, const char *name,
+                                   const char *value)
+{
+    struct fields *fields = context;
+    (void)kind;
+    value = value == NULL ? "" : value;
+    fields->bytes += strlen(name) + strlen(value) + 4;
+    fields->malformed = fields->malformed || !is_token(name) || has_control(value);
+    if (strcasecmp(name, MHD_HTTP_HEADER_HOST) == 0) {
+        fields->host = value;
+        fields->host_count++;
+    } else if (strcasecmp(name, MHD_HTTP_HEADER_CONTENT_LENGTH) == 0) {
+        fields->length = value;
+        fields->length_count++;
+    } else if (strcasecmp(name, MHD_HTTP_HEADER_TRANSFER_ENCODING) == 0) {
+        fields->encoding = value;
+        fields->encoding_count++;
+    } else if (strcasecmp(name, MHD_HTTP_HEADER_CONTENT_TYPE) == 0) {
+        fields->type_count++;
+    }
+    return MHD_YES;
+}
+
+static void refuse(struct request *request, unsigned int status, const char *code,
+                   const char *detail)
+{
+    reply_problem(&request->reply, status, code, NULL, NULL, "%s", detail);
+    request->reply.close = true;
+}
+
+/* Anything that could make a proxy and this server see different requests is refused. */
+static bool framing_check(struct request *request, const struct fields *fields)
+{
+    const char *problem = NULL;
+    if (fields->malformed)
+        problem = "a header field is malformed";
+    else if (fields->length_count > 1)
+        problem = "Content-Length is given more than once";
+    else if (fields->encoding_count > 1)
+        problem = "Transfer-Encoding is given more than once";
+    else if (fields->length_count > 0 && fields->encoding_count > 0)
+        problem = "Content-Length and Transfer-Encoding exclude each other";
+    else if (fields->encoding_count > 0 && strcasecmp(fields->encoding, "chunked") != 0)
+        problem = "the only Transfer-Encoding understood is chunked";
+    else if (fields->length_count > 0 &&
+             (fields->length[0] == '\0' ||
+              strspn(fields->length, "0123456789") != strlen(fields->length)))
+        problem = "Content-Length is not a number";
+    else if (fields->host_count != 1)
+        problem = "exactly one Host is needed";
+    else if (fields->type_count > 1)
+        problem = "Content-Type is given more than once";
+    if (problem != NULL)
+        refuse(request, MHD_HTTP_BAD_REQUEST, "framing", problem);
+    return problem == NULL;
+}
+
+/* Only names of this machine: a page whose name was made to point here (DNS rebinding) carries its
+ * own. */
+static bool host_is_loopback(const char *host)
+{
+    char name[128];
+    struct in_addr four;
+    if (strlen(host) >= sizeof name)
+        return false;
+    (void)snprintf(name, sizeof name, "%s", host);
+    char *colon = name[0] == '[' ? strstr(name, "]:") : strchr(name, ':');
+    if (colon != NULL) {
+        colon += name[0] == '[';
+        if (strspn(colon + 1, "0123456789") != strlen(colon + 1))
+            return false;
+        *colon = '\0';
+    }
+    if (strcasecmp(name, "localhost") == 0 || strcmp(name, "[::1]") == 0)
+        return true;
+    return inet_pton(AF_INET, name, &four) == 1 && (ntohl(four.s_addr) >> 24) == 127;
+}
+
+static bool origin_check(struct request *request, const char *host)
+{
+    const char *origin = request_header(request, MHD_HTTP_HEADER_ORIGIN);
+    if (!host_is_loopback(host)) {
+        refuse(request, MHD_HTTP_FORBIDDEN, "host", "Host does not name this machine");
+        return false;
+    }
+    if (origin == NULL)
+        return true;
+    const char *name = strncmp(origin, "http://", 7) == 0 ? origin + 7 : "";
+    if (strcasecmp(name, host) == 0)
+        return true;
+    refuse(request, MHD_HTTP_FORBIDDEN, "origin", "pages of another origin may not call here");
+    return false;
+}
+
+static bool type_is_json(const char *type)
+{
+    static const char json[] = "application/json";
+    if (type == NULL || strncasecmp(type, json, sizeof json - 1) != 0)
+        return false;
+    type += sizeof json - 1;
+    type += strspn(type, " \t");
+    if (*type == '\0')
+        return true;
+    if (*type++ != ';')
+        return false;
+    type += strspn(type, " \t");
+    return *type == '\0' || strcasecmp(type, "charset=utf-8") == 0 ||
+           strcasecmp(type, "charset=\"utf-8\"") == 0;
+}
+
+static void body_check(struct request *request, const struct fields *fields)
+{
+    double limit = request->service->config->body_bytes;
+    double length = fields->length == NULL ? 0 : strtod(fields->length, NULL);
+    if (length > limit) {
+        reply_problem(&request->reply, MHD_HTTP_CONTENT_TOO_LARGE, "too_large", request->raw, NULL,
+                      "a body has at most %.0f bytes", limit);
+        request->reply.close = length > 4 * limit;
+        return;
+    }
+    if (!http_has_body(request) || strcmp(request->route->method, "POST") != 0)
+        return;
+    if (request_header(request, MHD_HTTP_HEADER_CONTENT_ENCODING) != NULL)
+        reply_problem(&request->reply, MHD_HTTP_UNSUPPORTED_MEDIA_TYPE, "content_encoding",
+                      request->raw, NULL, "bodies are taken without Content-Encoding only");
+    else if (!type_is_json(request_header(request, MHD_HTTP_HEADER_CONTENT_TYPE)))
+        reply_problem(&request->reply, MHD_HTTP_UNSUPPORTED_MEDIA_TYPE, "content_type",
+                      request->raw, NULL, "bodies must be application/json in UTF-8");
+}
+
+bool http_has_body(const struct request *request)
+{
+    const char *length = request_header(request, MHD_HTTP_HEADER_CONTENT_LENGTH);
+    return request_header(request, MHD_HTTP_HEADER_TRANSFER_ENCODING) != NULL ||
+           (length != NULL && strtod(length, NULL) > 0);
+}
+
+void http_check(struct request *request)
+{
+    struct fields fields = {0};
+    (void)MHD_get_connection_values(request->connection, MHD_HEADER_KIND, field_visit, &fields);
+    if (fields.bytes > FIELDS_BYTES_MAX) {
+        refuse(request, MHD_HTTP_REQUEST_HEADER_FIELDS_TOO_LARGE, "fields_too_large",
+               "the header fields are too large");
+        return;
+    }
+    if (strlen(request->raw) > TARGET_BYTES_MAX) {
+        refuse(request, MHD_HTTP_URI_TOO_LONG, "target_too_long", "the target is too long");
+        return;
+    }
+    if (!framing_check(request, &fields) || !origin_check(request, fields.host))
+        return;
+    const char *problem = target_parse(&request->target, request->raw);
+    if (problem != NULL) {
+        refuse(request, MHD_HTTP_BAD_REQUEST, "target", problem);
+        return;
+    }
+    request_route(request);
+    if (request->reply.response == NULL)
+        body_check(request, &fields);
+}

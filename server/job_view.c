@@ -1,0 +1,84 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* A job as clients see it. */
+#include "jobs.h"
+#include "supervisor.h"
+
+#include <stdio.h>
+#include <string.h>
+
+static json_t *text_json(const char *text)
+{
+    return text == NULL ? json_null() : json_string(text);
+}
+
+static json_t *document_json(const char *text, const char *missing)
+{
+    json_t *value = json_loads(text == NULL ? missing : text, JSON_DECODE_ANY, NULL);
+    return value == NULL ? json_null() : value;
+}
+
+static json_t *limits_json(const struct job *job)
+{
+    json_t *limits = json_object();
+    if (job->wall_limit > 0)
+        (void)json_object_set_new(limits, "wall_seconds", json_real(job->wall_limit));
+    if (job->memory_limit > 0)
+        (void)json_object_set_new(limits, "memory_bytes", json_integer(job->memory_limit));
+    if (job->disk_limit > 0)
+        (void)json_object_set_new(limits, "disk_bytes", json_integer(job->disk_limit));
+    return limits;
+}
+
+static json_t *links_json(const struct job *job)
+{
+    static const char *const names[] = {"events", "series", "frames", "files",
+                                        "log",    "cancel", "resume"};
+    char path[128];
+    json_t *links = json_object();
+    (void)snprintf(path, sizeof path, "/v1/jobs/%s", job->id);
+    (void)json_object_set_new(links, "self", json_string(path));
+    for (size_t index = 0; index < sizeof names / sizeof names[0]; index++) {
+        (void)snprintf(path, sizeof path, "/v1/jobs/%s/%s", job->id, names[index]);
+        (void)json_object_set_new(links, names[index], json_string(path));
+    }
+    return links;
+}
+
+static json_t *progress_json(struct service *service, const struct job *job)
+{
+    json_t *progress =
+        job->state == JOB_RUNNING ? supervisor_progress(service->supervisor, job->id) : NULL;
+    return progress != NULL ? progress : document_json(job->progress, "null");
+}
+
+json_t *jobs_json(struct service *service, const struct job *job)
+{
+    json_t *view = json_object();
+    const char *state = job_state_name((enum job_state)job->state);
+    (void)json_object_set_new(view, "id", json_string(job->id));
+    (void)json_object_set_new(view, "name", text_json(job->name));
+    (void)json_object_set_new(view, "labels", document_json(job->labels, "{}"));
+    (void)json_object_set_new(view, "state", json_string(state));
+    (void)json_object_set_new(view, "reason", text_json(job->reason));
+    (void)json_object_set_new(view, "detail", text_json(job->detail));
+    (void)json_object_set_new(view, "cancel_requested",
+                              json_boolean(job->cancel_requested && job->state == JOB_RUNNING));
+    (void)json_object_set_new(view, "revision", json_integer(job->revision));
+    (void)json_object_set_new(view, "priority", json_integer(job->priority));
+    (void)json_object_set_new(view, "threads", json_integer(job->threads));
+    (void)json_object_set_new(view, "limits", limits_json(job));
+    (void)json_object_set_new(view, "retries", json_integer(job->retries));
+    (void)json_object_set_new(view, "created_at", text_json(job->created_at));
+    (void)json_object_set_new(view, "started_at", text_json(job->started_at));
+    (void)json_object_set_new(view, "finished_at", text_json(job->finished_at));
+    (void)json_object_set_new(view, "attempts", document_json(job->attempts, "[]"));
+    (void)json_object_set_new(view, "progress", progress_json(service, job));
+    (void)json_object_set_new(view, "forecast", document_json(job->forecast, "null"));
+    (void)json_object_set_new(view, "advice", document_json(job->advice, "[]"));
+    (void)json_object_set_new(view, "warnings", document_json(job->warnings, "[]"));
+    (void)json_object_set_new(view, "metrics", document_json(job->metrics, "null"));
+    (void)json_object_set_new(view, "receipt", document_json(job->receipt, "null"));
+    (void)json_object_set_new(view, "scene_hash", text_json(job->scene_hash));
+    (void)json_object_set_new(view, "links", links_json(job));
+    return view;
+}

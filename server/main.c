@@ -1,0 +1,59 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+#include "address.h"
+#include "config.h"
+#include "service.h"
+#include "talus/version.h"
+
+#include <signal.h>
+#include <stdio.h>
+#include <string.h>
+#include <unistd.h>
+
+enum { EXIT_USAGE = 2 };
+
+/* Serves until a signal asks to stop. */
+static enum talus_status serve(const struct config *config, struct talus_error *error)
+{
+    char address[ADDRESS_TEXT_SIZE];
+    struct service service;
+    sigset_t signals;
+    int listener = -1, signal_number = 0;
+    (void)sigemptyset(&signals);
+    (void)sigaddset(&signals, SIGTERM);
+    (void)sigaddset(&signals, SIGINT);
+    (void)sigaddset(&signals, SIGHUP);
+    (void)pthread_sigmask(SIG_BLOCK, &signals, NULL);
+    (void)signal(SIGPIPE, SIG_IGN);
+    enum talus_status status = address_listen(config->listen, &listener, address, error);
+    if (status == TALUS_OK)
+        status = service_start(&service, config, listener, error);
+    if (status != TALUS_OK)
+        return status;
+    (void)printf("talusd: listening on %s, state in %s\n", address, service.state);
+    (void)fflush(stdout);
+    do {
+        (void)sigwait(&signals, &signal_number);
+    } while (signal_number == SIGHUP);
+    service_stop(&service);
+    if (strncmp(address, "unix:", 5) == 0)
+        (void)unlink(address + 5);
+    return TALUS_OK;
+}
+
+int main(int argument_count, char **arguments)
+{
+    struct config config;
+    struct talus_error error = {0};
+    enum talus_status status = config_read(&config, argument_count, arguments, &error);
+    if (status == TALUS_OK && config.help)
+        config_usage(stdout);
+    else if (status == TALUS_OK && config.version)
+        (void)printf("talusd %s\n", talus_build());
+    else if (status == TALUS_OK)
+        status = serve(&config, &error);
+    config_release(&config);
+    if (status == TALUS_OK)
+        return 0;
+    (void)fprintf(stderr, "talusd: %s\n", error.text);
+    return status == TALUS_INVALID ? EXIT_USAGE : 1;
+}

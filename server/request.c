@@ -1,0 +1,175 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+#include "request.h"
+
+#include "identifier.h"
+#include "jobs.h"
+#include "service.h"
+#include "suggest.h"
+
+#include <errno.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+static const struct route routes[] = {
+#define ROUTE(method, path, lane, handler) {#method, path, LANE_##lane, handle_##handler},
+#include "routes.def"
+#undef ROUTE
+};
+enum { ROUTE_COUNT = sizeof routes / sizeof routes[0] };
+
+/* Joins segments from `index` on with slashes; false if they do not fit. */
+static bool segments_join(const struct target *target, size_t index, char *rest, size_t size)
+{
+    size_t length = 0;
+    rest[0] = '\0';
+    for (; index < target->segment_count; index++) {
+        int added = snprintf(rest + length, size - length, "%s%s", length == 0 ? "" : "/",
+                             target->segments[index]);
+        if (added < 0 || (size_t)added >= size - length)
+            return false;
+        length += (size_t)added;
+    }
+    return true;
+}
+
+/* Whether the pattern covers the target; on success the wildcards are filled in. */
+static bool route_matches(const struct route *route, struct request *request)
+{
+    const char *pattern = route->path;
+    const struct target *target = &request->target;
+    bool captured = false;
+    for (size_t index = 0;; index++) {
+        size_t length = strcspn(pattern, "/");
+        if (length == 2 && pattern[0] == '*')
+            return index < target->segment_count &&
+                   segments_join(target, index, request->rest, sizeof request->rest);
+        if (index >= target->segment_count)
+            return false;
+        const char *segment = target->segments[index];
+        if (length == 1 && pattern[0] == '*') {
+            if (captured)
+                (void)snprintf(request->rest, sizeof request->rest, "%s", segment);
+            else
+                request->segment = segment;
+            captured = true;
+        } else if (strlen(segment) != length || strncmp(segment, pattern, length) != 0) {
+            return false;
+        }
+        if (pattern[length] == '\0')
+            return index + 1 == target->segment_count;
+        pattern += length + 1;
+    }
+}
+
+void request_route(struct request *request)
+{
+    char allow[64] = "";
+    const char *method = strcmp(request->method, "HEAD") == 0 ? "GET" : request->method;
+    for (size_t index = 0; index < ROUTE_COUNT; index++) {
+        const struct route *route = &routes[index];
+        if (!route_matches(route, request))
+            continue;
+        if (strcmp(route->method, method) == 0) {
+            request->route = route;
+            return;
+        }
+        size_t length = strlen(allow);
+        (void)snprintf(allow + length, sizeof allow - length, "%s%s%s", length == 0 ? "" : ", ",
+                       route->method, strcmp(route->method, "GET") == 0 ? ", HEAD" : "");
+    }
+    if (allow[0] == '\0') {
+        reply_problem(&request->reply, MHD_HTTP_NOT_FOUND, "not_found", request->raw, NULL,
+                      "there is nothing at this path");
+        return;
+    }
+    reply_problem(&request->reply, MHD_HTTP_METHOD_NOT_ALLOWED, "method", request->raw, NULL,
+                  "%s does not apply here; allowed: %s", request->method, allow);
+    reply_header(&request->reply, MHD_HTTP_HEADER_ALLOW, allow);
+}
+
+const char *request_header(const struct request *request, const char *name)
+{
+    return MHD_lookup_connection_value(request->connection, MHD_HEADER_KIND, name);
+}
+
+static void query_problem(struct request *request, const char *name, const char *code,
+                          const char *value, const char *detail)
+{
+    json_t *errors = json_pack("[{s:s, s:s, s:s, s:s, s:s}]", "pointer", "", "parameter", name,
+                               "code", code, "detail", detail, "given", value);
+    reply_problem(&request->reply, MHD_HTTP_UNPROCESSABLE_CONTENT, "query", request->raw, errors,
+                  "query parameter %s: %s", name, detail);
+}
+
+bool request_query_check(struct request *request, const char *const *allowed)
+{
+    for (size_t index = 0; index < request->target.query_count; index++) {
+        const struct target_parameter *parameter = &request->target.query[index];
+        bool known = false, repeated = false;
+        for (size_t other = 0; allowed[other] != NULL; other++)
+            known = known || strcmp(allowed[other], parameter->name) == 0;
+        for (size_t other = 0; other < index; other++)
+            repeated = repeated || strcmp(request->target.query[other].name, parameter->name) == 0;
+        char detail[256];
+        const char *near = suggest(parameter->name, allowed);
+        if (known && !repeated)
+            continue;
+        (void)snprintf(detail, sizeof detail, "%s%s%s%s",
+                       repeated ? "is given twice" : "is not known here",
+                       near == NULL || repeated ? "" : "; did you mean ",
+                       near == NULL || repeated ? "" : near, near == NULL || repeated ? "" : "?");
+        query_problem(request, parameter->name, repeated ? "repeated" : "unknown_key",
+                      parameter->value, detail);
+        return false;
+    }
+    return true;
+}
+
+bool request_query_number(struct request *request, const char *name, double low, double high,
+                          double missing, double *number)
+{
+    const char *value = target_query(&request->target, name);
+    *number = missing;
+    if (value == NULL)
+        return true;
+    char *end = NULL;
+    *number = strtod(value, &end);
+    if (end != value && *end == '\0' && *number >= low && *number <= high)
+        return true;
+    char detail[128];
+    (void)snprintf(detail, sizeof detail, "a number from %g to %g is wanted", low, high);
+    query_problem(request, name, "range", value, detail);
+    return false;
+}
+
+bool request_job(struct request *request, struct job *job)
+{
+    struct talus_error error = {0};
+    memset(job, 0, sizeof *job);
+    if (!identifier_valid(request->segment)) {
+        reply_problem(&request->reply, MHD_HTTP_NOT_FOUND, "not_found", request->raw, NULL,
+                      "there is no such job");
+        return false;
+    }
+    if (store_job_read(request->service->store, request->segment, job, &error) != TALUS_OK) {
+        reply_error(&request->reply, request->raw, &error);
+        return false;
+    }
+    return true;
+}
+
+char *request_folder(struct request *request)
+{
+    struct job job;
+    if (!request_job(request, &job))
+        return NULL;
+    char *folder = jobs_folder(request->service, job.id);
+    job_release(&job);
+    if (folder == NULL) {
+        const struct talus_error error = {.code = "memory", .text = "out of memory"};
+        reply_error(&request->reply, request->raw, &error);
+    }
+    return folder;
+}

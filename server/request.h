@@ -1,0 +1,75 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* One request, from its first byte to its answer, and the table of routes. */
+#ifndef TALUS_REQUEST_H
+#define TALUS_REQUEST_H
+
+#include "job.h"
+#include "reply.h"
+#include "target.h"
+#include "text.h"
+
+#include <microhttpd.h>
+#include <stdbool.h>
+#include <stdint.h>
+
+struct service;
+struct helper;
+struct event_stream;
+struct connection_watch;
+
+enum lane { LANE_INLINE, LANE_QUICK, LANE_HELPER };
+enum handled {
+    HANDLED,        /* request->reply is made */
+    HANDLED_PARKED, /* a wait holds the request and will hand it in again */
+};
+
+struct request;
+
+struct route {
+    const char *method, *path;
+    enum lane lane;
+    enum handled (*handle)(struct request *request);
+};
+
+/* Owned by the HTTP library's connection; while it is suspended, by the lane or wait that has it.
+ */
+struct request {
+    struct service *service;
+    struct MHD_Connection *connection;
+    struct connection_watch *watch;
+    char *raw;    /* the target as sent */
+    char *method; /* "HEAD" has the route of "GET" */
+    struct target target;
+    const struct route *route;
+    const char *segment; /* what the first "*" stands for */
+    char rest[1024];     /* what the second "*" or "**" stands for */
+    struct text body;
+    uint64_t body_length; /* received, kept or not */
+    struct reply reply;
+    struct helper *helper; /* HELPER lane: the process to ask */
+    bool begun;            /* headers are checked */
+    bool handed_in;        /* was given to a lane */
+    double deadline;       /* of a wait (monotonic), 0: not waiting yet */
+    bool expired;          /* the wait is over, answer */
+    int64_t revision;      /* waits end when the job's revision is another; -1: only at the end */
+    struct request *next;
+};
+
+#define ROUTE(method, path, lane, handler) enum handled handle_##handler(struct request *request);
+#include "routes.def"
+#undef ROUTE
+
+/* Finds the route and fills segment and rest, or makes the reply (404, 405 with Allow). */
+void request_route(struct request *request);
+const char *request_header(const struct request *request, const char *name);
+/* Refuses query parameters other than `allowed` (NULL-terminated). False: the reply is made. */
+bool request_query_check(struct request *request, const char *const *allowed);
+/* A number in the query within [low, high], `missing` without it. False: the reply is made. */
+bool request_query_number(struct request *request, const char *name, double low, double high,
+                          double missing, double *number);
+/* Reads the job that the path names. False: the reply is made. */
+bool request_job(struct request *request, struct job *job);
+/* Its folder, of which the caller is the owner, or NULL with the reply made; the job exists. */
+char *request_folder(struct request *request);
+
+#endif

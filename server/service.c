@@ -1,0 +1,148 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+#include "service.h"
+
+#include "events.h"
+#include "file_checksums.h"
+#include "folder.h"
+#include "http.h"
+#include "jobs.h"
+#include "lanes.h"
+#include "moment.h"
+#include "recovery.h"
+#include "supervisor.h"
+#include "waits.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/file.h>
+#include <unistd.h>
+
+/* Load balancers and scripts see the refusal for at least this long. */
+static const double drain_seconds_min = 0.5;
+
+static enum talus_status boot_read(char boot[64], struct talus_error *error)
+{
+    FILE *stream = fopen("/proc/sys/kernel/random/boot_id", "re");
+    bool good = stream != NULL && fgets(boot, 64, stream) != NULL;
+    if (stream != NULL)
+        (void)fclose(stream);
+    boot[strcspn(boot, "\n")] = '\0';
+    return good ? TALUS_OK
+                : talus_error_set(error, TALUS_IO, "boot", "", "cannot read the machine's boot id");
+}
+
+/* Makes the state folder and takes its lock. */
+static enum talus_status state_take(struct service *service, struct talus_error *error)
+{
+    char path[4200];
+    enum talus_status status = folder_make(service->config->state, error);
+    if (status != TALUS_OK)
+        return status;
+    service->state = realpath(service->config->state, NULL);
+    if (service->state == NULL)
+        return talus_error_set(error, TALUS_IO, "state", "", "cannot use %s: %s",
+                               service->config->state, strerror(errno));
+    (void)snprintf(path, sizeof path, "%s/talusd.lock", service->state);
+    service->lock = open(path, O_RDWR | O_CREAT | O_CLOEXEC, 0640);
+    if (service->lock < 0)
+        return talus_error_set(error, TALUS_IO, "state", "", "cannot open %s: %s", path,
+                               strerror(errno));
+    if (flock(service->lock, LOCK_EX | LOCK_NB) != 0)
+        return talus_error_set(error, TALUS_IO, "state", "", "another talusd uses %s",
+                               service->state);
+    (void)snprintf(path, sizeof path, "%s/jobs", service->state);
+    return folder_make(path, error);
+}
+
+static enum talus_status parts_create(struct service *service, struct talus_error *error)
+{
+    char path[4200];
+    (void)snprintf(path, sizeof path, "%s/talus.sqlite", service->state);
+    enum talus_status status = identifier_source_init(&service->identifiers, error);
+    if (status == TALUS_OK)
+        status = file_checksums_create(&service->checksums, error);
+    if (status == TALUS_OK)
+        status = store_open(path, &service->store, error);
+    if (status == TALUS_OK)
+        status = waits_create(&service->waits, error);
+    if (status == TALUS_OK)
+        status = events_create(&service->events, service, error);
+    if (status == TALUS_OK)
+        status = supervisor_create(&service->supervisor, service, error);
+    if (status == TALUS_OK)
+        status = recovery_run(service, error);
+    if (status == TALUS_OK)
+        status = lanes_create(&service->lanes, service->config, error);
+    return status;
+}
+
+static void parts_destroy(struct service *service)
+{
+    lanes_destroy(service->lanes);
+    supervisor_destroy(service->supervisor);
+    events_destroy(service->events);
+    waits_destroy(service->waits);
+    store_close(service->store);
+    file_checksums_destroy(service->checksums);
+    json_decref(service->schema);
+    identifier_source_release(&service->identifiers);
+    (void)pthread_mutex_destroy(&service->schema_mutex);
+    (void)pthread_mutex_destroy(&service->journal);
+    if (service->lock >= 0)
+        (void)close(service->lock);
+    free(service->state);
+}
+
+enum talus_status service_start(struct service *service, const struct config *config, int listener,
+                                struct talus_error *error)
+{
+    memset(service, 0, sizeof *service);
+    service->config = config;
+    service->lock = -1;
+    (void)pthread_mutex_init(&service->journal, NULL);
+    (void)pthread_mutex_init(&service->schema_mutex, NULL);
+    enum talus_status status = boot_read(service->boot, error);
+    if (status == TALUS_OK)
+        status = state_take(service, error);
+    if (status == TALUS_OK)
+        status = parts_create(service, error);
+    if (status == TALUS_OK)
+        status = supervisor_start(service->supervisor, error);
+    if (status == TALUS_OK)
+        status = http_start(&service->http, service, listener, error);
+    else
+        (void)close(listener);
+    if (status != TALUS_OK)
+        parts_destroy(service);
+    return status;
+}
+
+/* Waits until no request is being answered, between two durations. */
+static void requests_wait(struct service *service, double at_least, double at_most)
+{
+    double begin = moment_monotonic();
+    for (;;) {
+        double elapsed = moment_monotonic() - begin;
+        bool busy = lanes_busy_count(service->lanes) > 0;
+        if (elapsed >= at_least && (!busy || elapsed >= at_most))
+            return;
+        (void)usleep(10000);
+    }
+}
+
+void service_stop(struct service *service)
+{
+    atomic_store(&service->draining, true);
+    waits_end(service->waits);
+    requests_wait(service, drain_seconds_min, service->config->drain_seconds);
+    http_close(service->http);
+    /* Helpers have their own deadlines, so this ends. */
+    while (lanes_busy_count(service->lanes) > 0)
+        (void)usleep(10000);
+    events_end(service->events);
+    http_stop(service->http);
+    parts_destroy(service);
+}

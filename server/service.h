@@ -1,0 +1,51 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* Everything a running daemon consists of. Parts are made in the order of the members and destroyed
+ * in reverse; each is thread-safe by itself. */
+#ifndef TALUS_SERVICE_H
+#define TALUS_SERVICE_H
+
+#include "config.h"
+#include "identifier.h"
+#include "store.h"
+
+#include <jansson.h>
+#include <pthread.h>
+#include <stdatomic.h>
+#include <stdbool.h>
+
+struct lanes;
+struct waits;
+struct events;
+struct supervisor;
+struct http_server;
+struct file_checksums;
+
+struct service {
+    const struct config *config;
+    char *state;          /* absolute path of the state folder */
+    char boot[64];        /* identifies the boot of the machine */
+    int lock;             /* descriptor that holds the state folder's lock */
+    atomic_bool draining; /* stops taking work */
+    struct identifier_source identifiers;
+    pthread_mutex_t journal; /* one state line is written at a time */
+    pthread_mutex_t schema_mutex;
+    json_t *schema; /* of scenes, once a helper has told it */
+    struct file_checksums *checksums;
+    struct store *store;
+    struct waits *waits;
+    struct events *events;
+    struct supervisor *supervisor;
+    struct lanes *lanes;
+    struct http_server *http;
+};
+
+/* Takes the state folder, reconciles what a dead daemon left, and starts. *config is borrowed, the
+ * listening socket taken over. On
+ * failure nothing is left running. */
+TALUS_MUST_CHECK enum talus_status service_start(struct service *service,
+                                                 const struct config *config, int listener,
+                                                 struct talus_error *error);
+/* Refuses new work, lets requests under way end, leaves workers running, and stops. */
+void service_stop(struct service *service);
+
+#endif

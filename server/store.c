@@ -1,0 +1,220 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+#include "store.h"
+
+#include "store_internal.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+enum { SCHEMA_VERSION = 1 };
+
+static const char schema[] =
+    "CREATE TABLE jobs (id TEXT PRIMARY KEY"
+#define JOB_TEXT(name) ", " #name " TEXT"
+#define JOB_INTEGER(name) ", " #name " INTEGER NOT NULL"
+#define JOB_REAL(name) ", " #name " REAL NOT NULL"
+#include "job_columns.def"
+#undef JOB_TEXT
+#undef JOB_INTEGER
+#undef JOB_REAL
+    ") WITHOUT ROWID;"
+    "CREATE INDEX jobs_by_state ON jobs (state, priority DESC, id);"
+    "CREATE TABLE transitions (row INTEGER PRIMARY KEY AUTOINCREMENT,"
+    " job TEXT NOT NULL REFERENCES jobs (id) ON DELETE CASCADE, number INTEGER NOT NULL,"
+    " at TEXT NOT NULL, state TEXT NOT NULL, attempt INTEGER NOT NULL, reason TEXT, detail TEXT,"
+    " UNIQUE (job, number));"
+    "CREATE TABLE idempotency (key TEXT NOT NULL, owner TEXT NOT NULL, body TEXT NOT NULL,"
+    " job TEXT NOT NULL REFERENCES jobs (id) ON DELETE CASCADE, PRIMARY KEY (owner, key))"
+    " WITHOUT ROWID;"
+    "CREATE INDEX idempotency_by_job ON idempotency (job);"
+    "PRAGMA user_version = 1;";
+
+enum talus_status store_failure(sqlite3 *database, struct talus_error *error)
+{
+    return talus_error_set(error, TALUS_IO, "store", "", "the store failed: %s",
+                           sqlite3_errmsg(database));
+}
+
+sqlite3_stmt *store_prepare(sqlite3 *database, const char *sql, struct talus_error *error)
+{
+    sqlite3_stmt *statement = NULL;
+    if (sqlite3_prepare_v2(database, sql, -1, &statement, NULL) != SQLITE_OK) {
+        store_failure(database, error);
+        return NULL;
+    }
+    return statement;
+}
+
+enum talus_status store_finish(sqlite3 *database, sqlite3_stmt *statement,
+                               struct talus_error *error)
+{
+    if (statement == NULL)
+        return TALUS_IO;
+    int step = sqlite3_step(statement);
+    enum talus_status status =
+        step == SQLITE_DONE || step == SQLITE_ROW ? TALUS_OK : store_failure(database, error);
+    (void)sqlite3_finalize(statement);
+    return status;
+}
+
+static bool execute(sqlite3 *database, const char *sql)
+{
+    return sqlite3_exec(database, sql, NULL, NULL, NULL) == SQLITE_OK;
+}
+
+/* Applies a chain of writes in one transaction; each stands or falls alone unless the commit
+ * fails. */
+static bool writes_commit(sqlite3 *database, struct store_write *first)
+{
+    bool begun = execute(database, "BEGIN IMMEDIATE");
+    for (struct store_write *write = first; write != NULL && begun; write = write->next) {
+        if (!execute(database, "SAVEPOINT one")) {
+            write->status = store_failure(database, write->error);
+            continue;
+        }
+        write->status = write->apply(database, write->context, write->error);
+        if (write->status != TALUS_OK && !execute(database, "ROLLBACK TO one"))
+            begun = false;
+        if (!execute(database, "RELEASE one"))
+            begun = false;
+    }
+    if (begun && execute(database, "COMMIT"))
+        return true;
+    for (struct store_write *write = first; write != NULL; write = write->next) {
+        if (write->status == TALUS_OK)
+            write->status = store_failure(database, write->error);
+    }
+    if (sqlite3_get_autocommit(database) == 0)
+        (void)execute(database, "ROLLBACK");
+    return false;
+}
+
+static void *writer_main(void *argument)
+{
+    struct store *store = argument;
+    (void)pthread_mutex_lock(&store->mutex);
+    for (;;) {
+        while (store->first == NULL && !store->stopping)
+            (void)pthread_cond_wait(&store->queued, &store->mutex);
+        struct store_write *first = store->first;
+        if (first == NULL)
+            break;
+        store->first = store->last = NULL;
+        (void)pthread_mutex_unlock(&store->mutex);
+        bool good = writes_commit(store->writer, first);
+        (void)pthread_mutex_lock(&store->mutex);
+        store->broken = !good;
+        while (first != NULL) {
+            struct store_write *next = first->next;
+            first->done = true;
+            first = next;
+        }
+        (void)pthread_cond_broadcast(&store->committed);
+    }
+    (void)pthread_mutex_unlock(&store->mutex);
+    return NULL;
+}
+
+enum talus_status store_write(struct store *store, store_apply *apply, void *context,
+                              struct talus_error *error)
+{
+    struct store_write write = {.apply = apply, .context = context, .error = error};
+    (void)pthread_mutex_lock(&store->mutex);
+    if (store->last == NULL)
+        store->first = &write;
+    else
+        store->last->next = &write;
+    store->last = &write;
+    (void)pthread_cond_signal(&store->queued);
+    while (!write.done)
+        (void)pthread_cond_wait(&store->committed, &store->mutex);
+    (void)pthread_mutex_unlock(&store->mutex);
+    return write.status;
+}
+
+bool store_healthy(struct store *store)
+{
+    (void)pthread_mutex_lock(&store->mutex);
+    bool healthy = !store->broken;
+    (void)pthread_mutex_unlock(&store->mutex);
+    return healthy;
+}
+
+static bool connection_open(const char *path, sqlite3 **database)
+{
+    return sqlite3_open_v2(path, database,
+                           SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE | SQLITE_OPEN_NOMUTEX,
+                           NULL) == SQLITE_OK &&
+           sqlite3_busy_timeout(*database, 10000) == SQLITE_OK &&
+           execute(*database, "PRAGMA journal_mode = WAL") &&
+           execute(*database, "PRAGMA synchronous = FULL") &&
+           execute(*database, "PRAGMA foreign_keys = ON");
+}
+
+static enum talus_status schema_prepare(sqlite3 *database, struct talus_error *error)
+{
+    sqlite3_stmt *statement = store_prepare(database, "PRAGMA user_version", error);
+    if (statement == NULL)
+        return TALUS_IO;
+    int version = sqlite3_step(statement) == SQLITE_ROW ? sqlite3_column_int(statement, 0) : -1;
+    (void)sqlite3_finalize(statement);
+    if (version == SCHEMA_VERSION)
+        return TALUS_OK;
+    if (version != 0)
+        return talus_error_set(error, TALUS_IO, "version", "",
+                               "the state was written by another version of talusd (format %d, "
+                               "this one reads %d)",
+                               version, SCHEMA_VERSION);
+    if (!execute(database, "BEGIN IMMEDIATE") || !execute(database, schema) ||
+        !execute(database, "COMMIT"))
+        return store_failure(database, error);
+    return TALUS_OK;
+}
+
+enum talus_status store_open(const char *path, struct store **result, struct talus_error *error)
+{
+    struct store *store = calloc(1, sizeof *store);
+    if (store == NULL)
+        return talus_error_set(error, TALUS_MEMORY, "memory", "", "out of memory");
+    (void)pthread_mutex_init(&store->mutex, NULL);
+    (void)pthread_mutex_init(&store->reader_mutex, NULL);
+    (void)pthread_cond_init(&store->queued, NULL);
+    (void)pthread_cond_init(&store->committed, NULL);
+    enum talus_status status = TALUS_OK;
+    if (!connection_open(path, &store->writer))
+        status = store_failure(store->writer, error);
+    if (status == TALUS_OK)
+        status = schema_prepare(store->writer, error);
+    if (status == TALUS_OK && !connection_open(path, &store->reader))
+        status = store_failure(store->reader, error);
+    if (status == TALUS_OK) {
+        store->started = pthread_create(&store->thread, NULL, writer_main, store) == 0;
+        if (!store->started)
+            status = talus_error_set(error, TALUS_INTERNAL, "thread", "", "cannot start a thread");
+    }
+    if (status != TALUS_OK) {
+        store_close(store);
+        store = NULL;
+    }
+    *result = store;
+    return status;
+}
+
+void store_close(struct store *store)
+{
+    if (store == NULL)
+        return;
+    (void)pthread_mutex_lock(&store->mutex);
+    store->stopping = true;
+    (void)pthread_cond_signal(&store->queued);
+    (void)pthread_mutex_unlock(&store->mutex);
+    if (store->started)
+        (void)pthread_join(store->thread, NULL);
+    (void)sqlite3_close(store->reader);
+    (void)sqlite3_close(store->writer);
+    (void)pthread_cond_destroy(&store->queued);
+    (void)pthread_cond_destroy(&store->committed);
+    (void)pthread_mutex_destroy(&store->mutex);
+    (void)pthread_mutex_destroy(&store->reader_mutex);
+    free(store);
+}

@@ -1,0 +1,91 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* Jobs on disk: SQLite in WAL mode with synchronous=FULL, so that what was acknowledged survives a
+ * power cut. One thread writes; requests that wait at the same time share one commit. Any thread
+ * may call any function. */
+#ifndef TALUS_STORE_H
+#define TALUS_STORE_H
+
+#include "job.h"
+#include "talus/status.h"
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+struct store;
+
+/* An idempotency key with the checksum of the body it came with. */
+struct store_key {
+    const char *key, *body;
+};
+
+enum store_insert {
+    STORE_INSERTED,
+    STORE_REPLAYED,   /* the key is known with this body: `existing` is its job */
+    STORE_OTHER_BODY, /* the key is known with another body */
+    STORE_QUEUE_FULL,
+};
+
+/* Which jobs a list shows, newest first. Everything is borrowed and optional (NULL, 0). */
+struct store_filter {
+    enum job_state state; /* JOB_STATE_COUNT: all */
+    const char *label_key, *label_value;
+    const char *before; /* only jobs with a smaller id */
+    int64_t limit;
+    bool every;    /* also those being deleted */
+    bool by_queue; /* highest priority first, then oldest first */
+};
+
+/* A change of state as the transition table has it; texts are borrowed. */
+struct store_transition {
+    int64_t number, attempt;
+    const char *at, *state, *reason, *detail;
+};
+
+/* Opens or makes the database and starts the writer. TALUS_IO if it cannot be opened or was written
+ * by a newer version. */
+TALUS_MUST_CHECK enum talus_status store_open(const char *path, struct store **store,
+                                              struct talus_error *error);
+/* Commits what waits, then closes. NULL is fine. */
+void store_close(struct store *store);
+/* Whether commits work. */
+bool store_healthy(struct store *store);
+
+/* Inserts a new job, with its key if there is one, in one transaction. `queue_limit` bounds the
+ * queued jobs (0: no bound). */
+TALUS_MUST_CHECK enum talus_status store_job_insert(struct store *store, const struct job *job,
+                                                    const struct store_key *key,
+                                                    int64_t queue_limit, enum store_insert *result,
+                                                    char existing[64], struct talus_error *error);
+/* Looks a key up without inserting: STORE_INSERTED stands for an unknown key. */
+TALUS_MUST_CHECK enum talus_status store_key_find(struct store *store, const struct store_key *key,
+                                                  enum store_insert *result, char existing[64],
+                                                  struct talus_error *error);
+/* Reads a job into an empty *job (release it). TALUS_INVALID, code "not_found", if it does not
+ * exist or is being deleted. */
+TALUS_MUST_CHECK enum talus_status store_job_read(struct store *store, const char *id,
+                                                  struct job *job, struct talus_error *error);
+/* Reads a job, lets `change` alter it, and writes it back with the next revision, all in one
+ * transaction; a new state adds a row to the transition table. Nothing is written when `change`
+ * fails. `change` runs on the store's thread. *result (or NULL) gets the job as it now is. */
+TALUS_MUST_CHECK enum talus_status store_job_change(
+    struct store *store, const char *id,
+    enum talus_status (*change)(struct job *job, void *context, struct talus_error *error),
+    void *context, struct job *result, struct talus_error *error);
+/* Forgets a job, its keys and its transitions. */
+TALUS_MUST_CHECK enum talus_status store_job_remove(struct store *store, const char *id,
+                                                    struct talus_error *error);
+/* Visits jobs until `visit` is false; it must not call the store. */
+TALUS_MUST_CHECK enum talus_status
+store_job_list(struct store *store, const struct store_filter *filter,
+               bool (*visit)(const struct job *job, void *context), void *context,
+               struct talus_error *error);
+/* Visits a job's transitions with a number above `after`, in order; `visit` must not call the
+ * store. */
+TALUS_MUST_CHECK enum talus_status
+store_transitions(struct store *store, const char *id, int64_t after,
+                  enum talus_status (*visit)(const struct store_transition *transition,
+                                             void *context, struct talus_error *error),
+                  void *context, struct talus_error *error);
+
+#endif

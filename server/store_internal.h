@@ -1,0 +1,42 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* Shared by the files of the store: the connections and the queue of writes. */
+#ifndef TALUS_STORE_INTERNAL_H
+#define TALUS_STORE_INTERNAL_H
+
+#include "store.h"
+
+#include <pthread.h>
+#include <sqlite3.h>
+
+/* A write, applied on the store's thread inside a transaction of its own (a savepoint). */
+typedef enum talus_status store_apply(sqlite3 *database, void *context, struct talus_error *error);
+
+struct store_write {
+    store_apply *apply;
+    void *context;
+    enum talus_status status;
+    struct talus_error *error;
+    bool done;
+    struct store_write *next;
+};
+
+struct store {
+    sqlite3 *writer, *reader;
+    pthread_mutex_t mutex, reader_mutex; /* of the queue; of `reader` */
+    pthread_cond_t queued, committed;
+    pthread_t thread;
+    struct store_write *first, *last;
+    bool stopping, broken, started;
+};
+
+/* Queues a write and waits until it is on disk. */
+TALUS_MUST_CHECK enum talus_status store_write(struct store *store, store_apply *apply,
+                                               void *context, struct talus_error *error);
+/* Prepares a statement; NULL with *error set. Finalize it. */
+sqlite3_stmt *store_prepare(sqlite3 *database, const char *sql, struct talus_error *error);
+/* Steps a statement that returns no rows, then finalizes it (NULL fails). */
+TALUS_MUST_CHECK enum talus_status store_finish(sqlite3 *database, sqlite3_stmt *statement,
+                                                struct talus_error *error);
+enum talus_status store_failure(sqlite3 *database, struct talus_error *error);
+
+#endif

@@ -1,0 +1,227 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* The rows of jobs, their keys and their transitions. */
+#include "store.h"
+#include "store_internal.h"
+#include "store_row.h"
+
+#include <assert.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+static enum talus_status transition_write(sqlite3 *database, const struct job *job,
+                                          struct talus_error *error)
+{
+    sqlite3_stmt *statement =
+        store_prepare(database,
+                      "INSERT INTO transitions (job, number, at, state, attempt, reason, detail)"
+                      " VALUES (?, ?, ?, ?, ?, ?, ?)",
+                      error);
+    if (statement != NULL) {
+        const char *state = job_state_name((enum job_state)job->state);
+        (void)sqlite3_bind_text(statement, 1, job->id, -1, SQLITE_STATIC);
+        (void)sqlite3_bind_int64(statement, 2, job->transition_count);
+        (void)sqlite3_bind_text(statement, 3, job->changed_at, -1, SQLITE_STATIC);
+        (void)sqlite3_bind_text(statement, 4, state, -1, SQLITE_STATIC);
+        (void)sqlite3_bind_int64(statement, 5, job->attempt);
+        (void)sqlite3_bind_text(statement, 6, job->reason, -1, SQLITE_STATIC);
+        (void)sqlite3_bind_text(statement, 7, job->detail, -1, SQLITE_STATIC);
+    }
+    return store_finish(database, statement, error);
+}
+
+static enum talus_status row_find(sqlite3 *database, const char *id, struct job *job,
+                                  struct talus_error *error)
+{
+    char sql[2048];
+    (void)snprintf(sql, sizeof sql, "%s WHERE id = ?", store_row_select);
+    sqlite3_stmt *statement = store_prepare(database, sql, error);
+    if (statement == NULL)
+        return TALUS_IO;
+    (void)sqlite3_bind_text(statement, 1, id, -1, SQLITE_STATIC);
+    int step = sqlite3_step(statement);
+    enum talus_status status = TALUS_OK;
+    if (step == SQLITE_ROW)
+        store_row_read(statement, job);
+    else if (step == SQLITE_DONE)
+        status = talus_error_set(error, TALUS_INVALID, "not_found", "", "there is no job %s", id);
+    else
+        status = store_failure(database, error);
+    (void)sqlite3_finalize(statement);
+    return status;
+}
+
+enum talus_status store_job_read(struct store *store, const char *id, struct job *job,
+                                 struct talus_error *error)
+{
+    (void)pthread_mutex_lock(&store->reader_mutex);
+    enum talus_status status = row_find(store->reader, id, job, error);
+    (void)pthread_mutex_unlock(&store->reader_mutex);
+    if (status == TALUS_OK && job->deleting) {
+        job_release(job);
+        status = talus_error_set(error, TALUS_INVALID, "not_found", "", "there is no job %s", id);
+    }
+    return status;
+}
+
+static enum talus_status key_find(sqlite3 *database, const struct store_key *key,
+                                  enum store_insert *result, char existing[64],
+                                  struct talus_error *error)
+{
+    *result = STORE_INSERTED;
+    sqlite3_stmt *statement = store_prepare(
+        database, "SELECT body, job FROM idempotency WHERE owner = '' AND key = ?", error);
+    if (statement == NULL)
+        return TALUS_IO;
+    (void)sqlite3_bind_text(statement, 1, key->key, -1, SQLITE_STATIC);
+    int step = sqlite3_step(statement);
+    if (step == SQLITE_ROW) {
+        const char *body = (const char *)sqlite3_column_text(statement, 0);
+        const char *job = (const char *)sqlite3_column_text(statement, 1);
+        *result = strcmp(body, key->body) == 0 ? STORE_REPLAYED : STORE_OTHER_BODY;
+        (void)snprintf(existing, 64, "%s", job);
+    }
+    (void)sqlite3_finalize(statement);
+    return step == SQLITE_ROW || step == SQLITE_DONE ? TALUS_OK : store_failure(database, error);
+}
+
+enum talus_status store_key_find(struct store *store, const struct store_key *key,
+                                 enum store_insert *result, char existing[64],
+                                 struct talus_error *error)
+{
+    (void)pthread_mutex_lock(&store->reader_mutex);
+    enum talus_status status = key_find(store->reader, key, result, existing, error);
+    (void)pthread_mutex_unlock(&store->reader_mutex);
+    return status;
+}
+
+struct insert_context {
+    const struct job *job;
+    const struct store_key *key;
+    int64_t queue_limit;
+    enum store_insert result;
+    char *existing;
+};
+
+static enum talus_status queue_check(sqlite3 *database, struct insert_context *insert,
+                                     struct talus_error *error)
+{
+    sqlite3_stmt *statement =
+        store_prepare(database, "SELECT count(*) FROM jobs WHERE state = ?", error);
+    if (statement == NULL)
+        return TALUS_IO;
+    (void)sqlite3_bind_int(statement, 1, JOB_QUEUED);
+    bool found = sqlite3_step(statement) == SQLITE_ROW;
+    if (found && sqlite3_column_int64(statement, 0) >= insert->queue_limit)
+        insert->result = STORE_QUEUE_FULL;
+    (void)sqlite3_finalize(statement);
+    return found ? TALUS_OK : store_failure(database, error);
+}
+
+static enum talus_status key_write(sqlite3 *database, const struct insert_context *insert,
+                                   struct talus_error *error)
+{
+    sqlite3_stmt *statement = store_prepare(
+        database, "INSERT INTO idempotency (key, owner, body, job) VALUES (?, '', ?, ?)", error);
+    if (statement != NULL) {
+        (void)sqlite3_bind_text(statement, 1, insert->key->key, -1, SQLITE_STATIC);
+        (void)sqlite3_bind_text(statement, 2, insert->key->body, -1, SQLITE_STATIC);
+        (void)sqlite3_bind_text(statement, 3, insert->job->id, -1, SQLITE_STATIC);
+    }
+    return store_finish(database, statement, error);
+}
+
+static enum talus_status insert_apply(sqlite3 *database, void *context, struct talus_error *error)
+{
+    struct insert_context *insert = context;
+    enum talus_status status = TALUS_OK;
+    insert->result = STORE_INSERTED;
+    if (insert->key != NULL)
+        status = key_find(database, insert->key, &insert->result, insert->existing, error);
+    if (status == TALUS_OK && insert->result == STORE_INSERTED && insert->queue_limit > 0)
+        status = queue_check(database, insert, error);
+    if (status != TALUS_OK || insert->result != STORE_INSERTED)
+        return status;
+    status = store_row_write(database, insert->job, error);
+    if (status == TALUS_OK)
+        status = transition_write(database, insert->job, error);
+    if (status == TALUS_OK && insert->key != NULL)
+        status = key_write(database, insert, error);
+    return status;
+}
+
+enum talus_status store_job_insert(struct store *store, const struct job *job,
+                                   const struct store_key *key, int64_t queue_limit,
+                                   enum store_insert *result, char existing[64],
+                                   struct talus_error *error)
+{
+    struct insert_context insert = {
+        .job = job, .key = key, .queue_limit = queue_limit, .existing = existing};
+    enum talus_status status = store_write(store, insert_apply, &insert, error);
+    *result = insert.result;
+    return status;
+}
+
+struct change_context {
+    const char *id;
+    enum talus_status (*change)(struct job *job, void *context, struct talus_error *error);
+    void *context;
+    struct job job;
+};
+
+static enum talus_status change_apply(sqlite3 *database, void *context, struct talus_error *error)
+{
+    struct change_context *change = context;
+    enum talus_status status = row_find(database, change->id, &change->job, error);
+    if (status == TALUS_OK && change->job.deleting)
+        status = talus_error_set(error, TALUS_INVALID, "not_found", "", "there is no job %s",
+                                 change->id);
+    if (status != TALUS_OK)
+        return status;
+    int64_t transition_count = change->job.transition_count;
+    status = change->change(&change->job, change->context, error);
+    if (status != TALUS_OK)
+        return status;
+    assert(change->job.transition_count <= transition_count + 1);
+    change->job.revision++;
+    status = store_row_write(database, &change->job, error);
+    if (status == TALUS_OK && change->job.transition_count > transition_count)
+        status = transition_write(database, &change->job, error);
+    if (status == TALUS_OK && change->job.deleting) {
+        sqlite3_stmt *statement =
+            store_prepare(database, "DELETE FROM idempotency WHERE job = ?", error);
+        if (statement != NULL)
+            (void)sqlite3_bind_text(statement, 1, change->id, -1, SQLITE_STATIC);
+        status = store_finish(database, statement, error);
+    }
+    return status;
+}
+
+enum talus_status store_job_change(struct store *store, const char *id,
+                                   enum talus_status (*change)(struct job *job, void *context,
+                                                               struct talus_error *error),
+                                   void *context, struct job *result, struct talus_error *error)
+{
+    struct change_context all = {.id = id, .change = change, .context = context};
+    enum talus_status status = store_write(store, change_apply, &all, error);
+    if (status == TALUS_OK && result != NULL)
+        *result = all.job;
+    else
+        job_release(&all.job);
+    return status;
+}
+
+static enum talus_status remove_apply(sqlite3 *database, void *context, struct talus_error *error)
+{
+    sqlite3_stmt *statement = store_prepare(database, "DELETE FROM jobs WHERE id = ?", error);
+    if (statement != NULL)
+        (void)sqlite3_bind_text(statement, 1, context, -1, SQLITE_STATIC);
+    return store_finish(database, statement, error);
+}
+
+enum talus_status store_job_remove(struct store *store, const char *id, struct talus_error *error)
+{
+    char copy[64];
+    (void)snprintf(copy, sizeof copy, "%s", id);
+    return store_write(store, remove_apply, copy, error);
+}

@@ -1,0 +1,124 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* Lists of jobs and of transitions. */
+#include "store.h"
+#include "store_internal.h"
+#include "store_row.h"
+#include "text.h"
+
+#include <string.h>
+
+static void filter_sql(const struct store_filter *filter, struct text *sql)
+{
+    text_print(sql, "%s WHERE 1", store_row_select);
+    if (!filter->every)
+        text_add_string(sql, " AND deleting = 0");
+    if (filter->state != JOB_STATE_COUNT)
+        text_add_string(sql, " AND state = :state");
+    if (filter->label_key != NULL)
+        text_add_string(sql, " AND EXISTS (SELECT 1 FROM json_each(labels) AS label"
+                             " WHERE label.key = :key AND label.value = :value)");
+    if (filter->before != NULL)
+        text_add_string(sql, " AND id < :before");
+    text_add_string(sql, filter->by_queue ? " ORDER BY priority DESC, id" : " ORDER BY id DESC");
+    if (filter->limit > 0)
+        text_add_string(sql, " LIMIT :limit");
+}
+
+static void filter_bind_text(sqlite3_stmt *statement, const char *name, const char *value)
+{
+    int index = sqlite3_bind_parameter_index(statement, name);
+    if (index > 0)
+        (void)sqlite3_bind_text(statement, index, value, -1, SQLITE_STATIC);
+}
+
+static void filter_bind_integer(sqlite3_stmt *statement, const char *name, int64_t value)
+{
+    int index = sqlite3_bind_parameter_index(statement, name);
+    if (index > 0)
+        (void)sqlite3_bind_int64(statement, index, value);
+}
+
+static enum talus_status list_rows(sqlite3 *database, sqlite3_stmt *statement,
+                                   bool (*visit)(const struct job *job, void *context),
+                                   void *context, struct talus_error *error)
+{
+    int step = SQLITE_DONE;
+    bool more = true;
+    while (more && (step = sqlite3_step(statement)) == SQLITE_ROW) {
+        struct job job = {0};
+        store_row_read(statement, &job);
+        more = visit(&job, context);
+        job_release(&job);
+    }
+    return step == SQLITE_ROW || step == SQLITE_DONE ? TALUS_OK : store_failure(database, error);
+}
+
+enum talus_status store_job_list(struct store *store, const struct store_filter *filter,
+                                 bool (*visit)(const struct job *job, void *context), void *context,
+                                 struct talus_error *error)
+{
+    struct text sql = {0};
+    filter_sql(filter, &sql);
+    if (sql.failed)
+        return talus_error_set(error, TALUS_MEMORY, "memory", "", "out of memory");
+    (void)pthread_mutex_lock(&store->reader_mutex);
+    enum talus_status status = TALUS_IO;
+    sqlite3_stmt *statement = store_prepare(store->reader, sql.data, error);
+    if (statement != NULL) {
+        filter_bind_integer(statement, ":state", (int64_t)filter->state);
+        filter_bind_integer(statement, ":limit", filter->limit);
+        filter_bind_text(statement, ":key", filter->label_key);
+        filter_bind_text(statement, ":value", filter->label_value);
+        filter_bind_text(statement, ":before", filter->before);
+        status = list_rows(store->reader, statement, visit, context, error);
+        (void)sqlite3_finalize(statement);
+    }
+    (void)pthread_mutex_unlock(&store->reader_mutex);
+    text_release(&sql);
+    return status;
+}
+
+static enum talus_status
+transition_visit(sqlite3_stmt *statement,
+                 enum talus_status (*visit)(const struct store_transition *transition,
+                                            void *context, struct talus_error *error),
+                 void *context, struct talus_error *error)
+{
+    const struct store_transition transition = {
+        .number = sqlite3_column_int64(statement, 0),
+        .at = (const char *)sqlite3_column_text(statement, 1),
+        .state = (const char *)sqlite3_column_text(statement, 2),
+        .attempt = sqlite3_column_int64(statement, 3),
+        .reason = (const char *)sqlite3_column_text(statement, 4),
+        .detail = (const char *)sqlite3_column_text(statement, 5),
+    };
+    return visit(&transition, context, error);
+}
+
+enum talus_status
+store_transitions(struct store *store, const char *id, int64_t after,
+                  enum talus_status (*visit)(const struct store_transition *transition,
+                                             void *context, struct talus_error *error),
+                  void *context, struct talus_error *error)
+{
+    enum talus_status status = TALUS_IO;
+    (void)pthread_mutex_lock(&store->reader_mutex);
+    sqlite3_stmt *statement =
+        store_prepare(store->reader,
+                      "SELECT number, at, state, attempt, reason, detail FROM transitions"
+                      " WHERE job = ? AND number > ? ORDER BY number",
+                      error);
+    if (statement != NULL) {
+        int step = SQLITE_DONE;
+        status = TALUS_OK;
+        (void)sqlite3_bind_text(statement, 1, id, -1, SQLITE_STATIC);
+        (void)sqlite3_bind_int64(statement, 2, after);
+        while (status == TALUS_OK && (step = sqlite3_step(statement)) == SQLITE_ROW)
+            status = transition_visit(statement, visit, context, error);
+        if (status == TALUS_OK && step != SQLITE_DONE)
+            status = store_failure(store->reader, error);
+        (void)sqlite3_finalize(statement);
+    }
+    (void)pthread_mutex_unlock(&store->reader_mutex);
+    return status;
+}

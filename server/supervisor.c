@@ -1,0 +1,340 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+#include "supervisor.h"
+
+#include "attempt.h"
+#include "executor_local.h"
+#include "folder.h"
+#include "jobs.h"
+#include "moment.h"
+#include "scheduler.h"
+
+#include <errno.h>
+#include <poll.h>
+#include <pthread.h>
+#include <signal.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/eventfd.h>
+#include <unistd.h>
+
+enum { TICK_MILLISECONDS = 50, CANDIDATES_MAX = 64 };
+static const double disk_check_seconds = 2;
+static const double spawn_retry_seconds = 1;
+
+struct supervisor {
+    struct service *service;
+    pthread_t thread;
+    bool started;
+    atomic_bool stopping;
+    int wake;              /* eventfd */
+    pthread_mutex_t mutex; /* of the list of attempts and their progress */
+    struct attempt *first;
+    struct scheduler scheduler;
+    double start_after; /* no start before (monotonic): the last one failed */
+};
+
+enum talus_status supervisor_create(struct supervisor **result, struct service *service,
+                                    struct talus_error *error)
+{
+    struct supervisor *supervisor = calloc(1, sizeof *supervisor);
+    *result = supervisor;
+    if (supervisor == NULL)
+        return talus_error_set(error, TALUS_MEMORY, "memory", "", "out of memory");
+    supervisor->service = service;
+    (void)pthread_mutex_init(&supervisor->mutex, NULL);
+    supervisor->wake = eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK);
+    if (supervisor->wake >= 0)
+        return TALUS_OK;
+    free(supervisor);
+    *result = NULL;
+    return talus_error_set(error, TALUS_INTERNAL, "eventfd", "", "cannot make an eventfd");
+}
+
+void supervisor_wake(struct supervisor *supervisor)
+{
+    const uint64_t one = 1;
+    if (supervisor != NULL && write(supervisor->wake, &one, sizeof one) < 0 && errno != EAGAIN)
+        (void)fprintf(stderr, "talusd: cannot wake the supervisor\n");
+}
+
+json_t *supervisor_progress(struct supervisor *supervisor, const char *id)
+{
+    json_t *progress = NULL;
+    (void)pthread_mutex_lock(&supervisor->mutex);
+    for (struct attempt *attempt = supervisor->first; attempt != NULL; attempt = attempt->next) {
+        if (strcmp(attempt->id, id) == 0 && attempt->progress != NULL)
+            progress = json_deep_copy(attempt->progress);
+    }
+    (void)pthread_mutex_unlock(&supervisor->mutex);
+    return progress;
+}
+
+/* Adds an attempt of a job that runs, with its child or (0) adopted. */
+static bool attempt_add(struct supervisor *supervisor, const struct job *job, pid_t pid)
+{
+    char *folder = jobs_folder(supervisor->service, job->id);
+    struct attempt *attempt =
+        folder == NULL ? NULL : attempt_create(job, folder, supervisor->service->boot);
+    free(folder);
+    if (attempt == NULL)
+        return false;
+    attempt->pid = pid;
+    (void)pthread_mutex_lock(&supervisor->mutex);
+    attempt->next = supervisor->first;
+    supervisor->first = attempt;
+    (void)pthread_mutex_unlock(&supervisor->mutex);
+    return true;
+}
+
+enum talus_status supervisor_adopt(struct supervisor *supervisor, const char *id,
+                                   struct talus_error *error)
+{
+    struct job job = {0};
+    enum talus_status status = store_job_read(supervisor->service->store, id, &job, error);
+    if (status == TALUS_OK && !attempt_add(supervisor, &job, 0))
+        status = talus_error_set(error, TALUS_MEMORY, "memory", "", "out of memory");
+    job_release(&job);
+    return status;
+}
+
+static void attempt_signal(const struct attempt *attempt, int signal_number)
+{
+    if (attempt->pid > 0 && !attempt->ended)
+        executor_signal(attempt->pid, signal_number);
+    else
+        executor_signal_holders(attempt->folder, signal_number);
+}
+
+/* Asks a worker to stop, and ends it when it does not. */
+static void attempt_stop(struct supervisor *supervisor, struct attempt *attempt, double now)
+{
+    if (attempt->stop_deadline <= 0) {
+        attempt_signal(attempt, SIGTERM);
+        attempt->stop_deadline = now + supervisor->service->config->stop_seconds;
+    } else if (now > attempt->stop_deadline) {
+        attempt_signal(attempt, SIGKILL);
+        attempt->stop_deadline = now + 1;
+    }
+}
+
+/* Finds reasons to stop a worker. */
+static void attempt_check(struct supervisor *supervisor, struct attempt *attempt, double now)
+{
+    double elapsed = moment_now() - attempt->started + attempt->wall_before;
+    if (attempt->wall_limit > 0 && elapsed > attempt->wall_limit && attempt->stop_reason == NULL)
+        attempt->stop_reason = "time_limit";
+    if (attempt->disk_limit > 0 && now >= attempt->next_disk_check) {
+        attempt->next_disk_check = now + disk_check_seconds;
+        if (folder_size(attempt->folder) > attempt->disk_limit && attempt->stop_reason == NULL)
+            attempt->stop_reason = "disk_limit";
+    }
+    struct job job = {0};
+    struct talus_error error = {0};
+    if (!attempt->cancel_requested &&
+        store_job_read(supervisor->service->store, attempt->id, &job, &error) == TALUS_OK)
+        attempt->cancel_requested = job.cancel_requested != 0;
+    job_release(&job);
+    /* A worker that has told its end gets time to exit by itself. */
+    if (attempt->last != NULL && attempt->stop_deadline <= 0)
+        attempt->stop_deadline = now + supervisor->service->config->stop_seconds;
+    if (attempt->last != NULL || attempt->cancel_requested || attempt->stop_reason != NULL ||
+        attempt->ended)
+        attempt_stop(supervisor, attempt, now);
+}
+
+/* Records the end of an attempt whose lock we got. False: the store refused; try again later. */
+static bool attempt_record(struct supervisor *supervisor, struct attempt *attempt)
+{
+    struct job_outcome outcome;
+    struct talus_error error = {0};
+    json_t *receipt = NULL;
+    char detail[512];
+    attempt_read(attempt);
+    attempt_outcome(attempt, &outcome, &receipt, detail);
+    enum talus_status status = jobs_finish(supervisor->service, attempt->id, &outcome, &error);
+    json_decref(receipt);
+    if (status != TALUS_OK)
+        (void)fprintf(stderr, "talusd: job %s: %s\n", attempt->id, error.text);
+    return status == TALUS_OK || strcmp(error.code, "not_found") == 0 ||
+           strcmp(error.code, "state") == 0;
+}
+
+static void attempt_unlink(struct supervisor *supervisor, struct attempt *attempt)
+{
+    (void)pthread_mutex_lock(&supervisor->mutex);
+    struct attempt **link = &supervisor->first;
+    while (*link != attempt)
+        link = &(*link)->next;
+    *link = attempt->next;
+    (void)pthread_mutex_unlock(&supervisor->mutex);
+    attempt_destroy(attempt);
+}
+
+/* One look at an attempt. */
+static void attempt_service(struct supervisor *supervisor, struct attempt *attempt, double now)
+{
+    (void)pthread_mutex_lock(&supervisor->mutex);
+    attempt_read(attempt);
+    (void)pthread_mutex_unlock(&supervisor->mutex);
+    if (attempt->pid > 0 && !attempt->ended)
+        attempt->ended = executor_ended(attempt->pid, &attempt->wait_status);
+    if (attempt->pid == 0 || attempt->ended) {
+        int lock = event_log_lock(attempt->folder);
+        if (lock >= 0) {
+            bool recorded = attempt_record(supervisor, attempt);
+            (void)close(lock);
+            if (recorded)
+                attempt_unlink(supervisor, attempt);
+            return;
+        }
+    }
+    attempt_check(supervisor, attempt, now);
+}
+
+struct candidates {
+    struct scheduler_candidate items[CANDIDATES_MAX];
+    size_t count;
+    int64_t workers; /* no job is wider than the machine is now */
+};
+
+static bool candidate_add(const struct job *job, void *context)
+{
+    struct candidates *candidates = context;
+    struct scheduler_candidate *candidate = &candidates->items[candidates->count];
+    (void)snprintf(candidate->id, sizeof candidate->id, "%s", job->id);
+    candidate->threads = job->threads < candidates->workers ? job->threads : candidates->workers;
+    candidates->count++;
+    return candidates->count < CANDIDATES_MAX;
+}
+
+/* Begins an attempt under its lock, which the worker inherits. */
+static enum talus_status attempt_begin(struct supervisor *supervisor, const char *id,
+                                       const char *folder, int lock, struct talus_error *error)
+{
+    struct service *service = supervisor->service;
+    struct job job = {0};
+    pid_t pid = 0;
+    enum talus_status status = jobs_begin(service, id, &job, error);
+    if (status != TALUS_OK)
+        return status;
+    if (job.threads > (int64_t)service->config->workers)
+        job.threads = (int64_t)service->config->workers;
+    const struct executor_task task = {
+        .program = service->config->worker_program,
+        .folder = folder,
+        .threads = job.threads,
+        .attempt = job.attempt,
+        .resume = job.attempt > 1,
+        .lock = lock,
+        .memory_limit = job.memory_limit,
+        .disk_limit = job.disk_limit,
+    };
+    status = executor_start(&task, &pid, error);
+    if (status != TALUS_OK) {
+        const struct job_outcome outcome = {.end = JOB_END_CRASHED,
+                                            .reason = "crashed",
+                                            .detail = error->text,
+                                            .exit_code = -1,
+                                            .signal_number = -1};
+        struct talus_error second = {0};
+        if (jobs_finish(service, id, &outcome, &second) != TALUS_OK)
+            (void)fprintf(stderr, "talusd: job %s: %s\n", id, second.text);
+    } else if (!attempt_add(supervisor, &job, pid)) {
+        executor_signal(pid, SIGKILL);
+        status = talus_error_set(error, TALUS_MEMORY, "memory", "", "out of memory");
+    }
+    job_release(&job);
+    return status;
+}
+
+static bool job_start(struct supervisor *supervisor, const char *id)
+{
+    struct talus_error error = {0};
+    char *folder = jobs_folder(supervisor->service, id);
+    int lock = folder == NULL ? -1 : event_log_lock(folder);
+    bool good = lock >= 0;
+    if (good) {
+        enum talus_status status = attempt_begin(supervisor, id, folder, lock, &error);
+        good = status == TALUS_OK || strcmp(error.code, "state") == 0 ||
+               strcmp(error.code, "not_found") == 0;
+        (void)close(lock);
+    }
+    if (error.status != TALUS_OK && !good)
+        (void)fprintf(stderr, "talusd: job %s: %s\n", id, error.text);
+    free(folder);
+    return good;
+}
+
+static int64_t threads_free(struct supervisor *supervisor)
+{
+    int64_t free_threads = (int64_t)supervisor->service->config->workers;
+    for (struct attempt *attempt = supervisor->first; attempt != NULL; attempt = attempt->next)
+        free_threads -= attempt->threads;
+    return free_threads;
+}
+
+static void jobs_start(struct supervisor *supervisor, double now)
+{
+    struct service *service = supervisor->service;
+    const struct store_filter filter = {
+        .state = JOB_QUEUED, .limit = CANDIDATES_MAX, .by_queue = true};
+    while (!atomic_load(&service->draining) && now >= supervisor->start_after &&
+           threads_free(supervisor) > 0) {
+        struct candidates candidates = {.workers = (int64_t)service->config->workers};
+        struct talus_error error = {0};
+        if (store_job_list(service->store, &filter, candidate_add, &candidates, &error) != TALUS_OK)
+            return;
+        size_t index = scheduler_pick(&supervisor->scheduler, candidates.items, candidates.count,
+                                      threads_free(supervisor), now);
+        if (index == candidates.count)
+            return;
+        if (!job_start(supervisor, candidates.items[index].id))
+            supervisor->start_after = now + spawn_retry_seconds;
+    }
+}
+
+static void *supervisor_main(void *argument)
+{
+    struct supervisor *supervisor = argument;
+    while (!atomic_load(&supervisor->stopping)) {
+        struct pollfd ready = {.fd = supervisor->wake, .events = POLLIN};
+        uint64_t count;
+        if (poll(&ready, 1, supervisor->first == NULL ? 1000 : TICK_MILLISECONDS) > 0 &&
+            read(supervisor->wake, &count, sizeof count) < 0 && errno != EAGAIN)
+            (void)fprintf(stderr, "talusd: cannot read the wake-up\n");
+        double now = moment_monotonic();
+        struct attempt *next;
+        for (struct attempt *attempt = supervisor->first; attempt != NULL; attempt = next) {
+            next = attempt->next;
+            attempt_service(supervisor, attempt, now);
+        }
+        jobs_start(supervisor, now);
+    }
+    return NULL;
+}
+
+enum talus_status supervisor_start(struct supervisor *supervisor, struct talus_error *error)
+{
+    supervisor->started =
+        pthread_create(&supervisor->thread, NULL, supervisor_main, supervisor) == 0;
+    supervisor_wake(supervisor);
+    return supervisor->started
+               ? TALUS_OK
+               : talus_error_set(error, TALUS_INTERNAL, "thread", "", "cannot start a thread");
+}
+
+void supervisor_destroy(struct supervisor *supervisor)
+{
+    if (supervisor == NULL)
+        return;
+    atomic_store(&supervisor->stopping, true);
+    supervisor_wake(supervisor);
+    if (supervisor->started)
+        (void)pthread_join(supervisor->thread, NULL);
+    while (supervisor->first != NULL)
+        attempt_unlink(supervisor, supervisor->first);
+    (void)close(supervisor->wake);
+    (void)pthread_mutex_destroy(&supervisor->mutex);
+    free(supervisor);
+}
