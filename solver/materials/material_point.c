@@ -20,7 +20,7 @@ struct control { /* of one step */
     double target[SYM3_COMPONENTS];
     double increment[SYM3_COMPONENTS]; /* total strain increment; unknowns: the estimate */
     double time_step;
-    double scale; /* what stresses are compared with [Pa] */
+    double scale; /* what stresses are compared with, at least [Pa] */
     int iterations;
 };
 
@@ -50,6 +50,15 @@ static double control_error(const struct point *point, const struct control *con
         largest = fmax(largest, error);
     }
     return largest;
+}
+
+/* What the error may be: a share of the stresses at hand. */
+static double control_tolerance(const struct point *point, const struct control *control)
+{
+    double scale = control->scale;
+    for (int component = 0; component < SYM3_COMPONENTS; component++)
+        scale = fmax(scale, fabs(point->trial.stress[component][0]));
+    return stress_tolerance * scale;
 }
 
 /* Newton step of the unknowns into change[], out of the lanes of the last try. */
@@ -90,10 +99,10 @@ static double control_offset(const struct point *point, const struct control *co
 static bool control_solve(struct point *point, struct control *control, double stiffness)
 {
     double offset = control_offset(point, control);
-    double tolerance = stress_tolerance * control->scale;
     bool valid = control_try(point, control, offset);
     double error = control_error(point, control);
-    for (control->iterations = 0; valid && error > tolerance; control->iterations++) {
+    for (control->iterations = 0; valid && error > control_tolerance(point, control);
+         control->iterations++) {
         double change[SYM3_COMPONENTS];
         if (control->iterations == ITERATION_MAX)
             return false;
@@ -109,7 +118,7 @@ static bool control_solve(struct point *point, struct control *control, double s
             }
             valid = control_try(point, control, offset);
             error = control_error(point, control);
-            if (valid && error < last)
+            if (valid && error <= last) /* equal: across a gap, where nothing is carried */
                 break;
         }
     }
