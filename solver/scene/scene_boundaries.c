@@ -95,7 +95,8 @@ static void read_faces(struct scene_reader *reader, const struct scene_path *pat
         }
         json_t *entry = json_object();
         scene_fields_read(reader, &here, scene_condition_fields, value, &keys->faces[face], entry);
-        scene_condition_finish(reader, &here, &keys->faces[face], &keys->boundary.faces[face]);
+        scene_condition_finish(reader, &here, value, &keys->faces[face],
+                               &keys->boundary.faces[face]);
         scene_put(reader, inner, key, entry);
     }
 }
@@ -221,7 +222,7 @@ const struct scene_field scene_boundary_fields[] = {
      .unit = "1",
      .read = read_body,
      .schema = body_schema,
-     .meaning = "acts on this body only"},
+     .meaning = "with eliminate: takes out particles of this body only"},
     {.key = "velocity", .unsupported = true},
     {.key = "components", .unsupported = true},
     {.key = "stays", .unsupported = true},
@@ -266,7 +267,7 @@ static void finish_moment(struct scene_reader *reader, struct boundary_keys *key
 
 /* A box: six faces with the boundary's condition unless they have their own. */
 static void finish_box(struct scene_reader *reader, const struct scene_path *path,
-                       struct boundary_keys *keys)
+                       const json_t *given, struct boundary_keys *keys)
 {
     struct talus_boundary *boundary = &keys->boundary;
     struct scene_path shape = {.parent = path, .key = "box"};
@@ -275,7 +276,7 @@ static void finish_box(struct scene_reader *reader, const struct scene_path *pat
     for (size_t face = 0; face < boundary->face_count; face++) {
         bool overridden = keys->faces[face].index != SIZE_MAX;
         if (!overridden)
-            scene_condition_finish(reader, path, &keys->condition, &boundary->faces[face]);
+            scene_condition_finish(reader, path, given, &keys->condition, &boundary->faces[face]);
         struct scene_path faces = {.parent = path, .key = "faces"};
         struct scene_path here = {.parent = &faces, .key = face_words[face]};
         if (overridden && keys->condition.index != SIZE_MAX &&
@@ -299,11 +300,11 @@ static void finish_shape(struct scene_reader *reader, const struct scene_path *p
     struct scene_path faces = {.parent = path, .key = "faces"};
     if (json_object_get(given, "box") != NULL) {
         boundary->shape = TALUS_BOUNDARY_BOX;
-        finish_box(reader, path, keys);
+        finish_box(reader, path, given, keys);
         return;
     }
     boundary->face_count = 1;
-    scene_condition_finish(reader, path, &keys->condition, &boundary->faces[0]);
+    scene_condition_finish(reader, path, given, &keys->condition, &boundary->faces[0]);
     if (json_object_get(given, "faces") != NULL)
         scene_mistake(reader, &faces, "contradiction", NULL, NULL, "only a box has 'faces'");
     if (json_object_get(given, "face") != NULL) {
@@ -312,6 +313,17 @@ static void finish_shape(struct scene_reader *reader, const struct scene_path *p
     }
     struct scene_path plane = {.parent = path, .key = "plane"};
     scene_face_normalise(reader, &plane, boundary->normal, json_object_get(effective, "plane"));
+}
+
+/* Bodies share one velocity field: only particles can be told apart, not what moves a node. */
+static void check_filter(struct scene_reader *reader, const struct scene_path *path,
+                         const struct boundary_keys *keys)
+{
+    struct scene_path here = {.parent = path, .key = "body"};
+    if (keys->boundary.body_index >= 0 && keys->condition.index != SIZE_MAX &&
+        !scene_condition_eliminates(keys->condition.index))
+        scene_mistake(reader, &here, "unsupported", NULL, NULL,
+                      "only the condition \"eliminate\" can act on one body in this build");
 }
 
 static void read_boundary(struct scene_reader *reader, const struct scene_path *path,
@@ -328,6 +340,7 @@ static void read_boundary(struct scene_reader *reader, const struct scene_path *
     keys.moment_about[0] = NAN;
     scene_fields_read(reader, path, scene_boundary_fields, given, &keys, effective);
     finish_shape(reader, path, given, &keys, effective);
+    check_filter(reader, path, &keys);
     finish_moment(reader, &keys, effective);
     keys.boundary.name = scene_entry_name(reader, path, keys.name, "boundary", effective);
     memcpy(item, &keys.boundary, sizeof keys.boundary);

@@ -4,6 +4,7 @@
 
 #include "materials/material.h"
 #include "seeding/seeding.h"
+#include "talus/simulation.h"
 
 #include <stdio.h>
 
@@ -101,6 +102,15 @@ static void check_courant(struct scene_reader *reader)
                       "%g times the critical step needs \"allow_unstable\": true", solver->courant);
 }
 
+/* A fixed step above the critical one, and whatever else the solver refuses. */
+static void check_estimate(struct scene_reader *reader)
+{
+    struct talus_estimate estimate;
+    struct talus_error error = {.status = TALUS_OK};
+    if (talus_simulation_estimate(reader->scene, &estimate, &error) != TALUS_OK)
+        scene_mistake_at(reader, error.pointer, error.code, error.text);
+}
+
 void scene_check(struct scene_reader *reader)
 {
     const struct talus_scene *scene = reader->scene;
@@ -111,6 +121,7 @@ void scene_check(struct scene_reader *reader)
         check_courant(reader);
     if (reader->issues->count > 0)
         return;
+    check_estimate(reader);
     for (size_t index = 0; index < scene->body_count; index++) {
         check_initial_stress(reader, index);
         warn_of_k0(reader, index);

@@ -47,10 +47,13 @@ void scene_condition_name_read(struct scene_reader *reader, const struct scene_p
                                const json_t *given, void *target, json_t *effective);
 json_t *scene_condition_name_schema(void);
 
-/* Checks what belongs to the condition and turns it into the face's own terms. */
+/* Checks what belongs to the condition (`given`: the object that holds its keys) and turns it into
+ * the face's own terms. */
 void scene_condition_finish(struct scene_reader *reader, const struct scene_path *path,
-                            const struct scene_condition *condition,
+                            const json_t *given, const struct scene_condition *condition,
                             struct talus_boundary_face *face);
+/* Name of a condition (static storage). */
+const char *scene_condition_name(size_t index);
 /* True if the condition takes particles out. */
 bool scene_condition_eliminates(size_t index);
 /* [{"condition","summary","reference","parameters"}] */

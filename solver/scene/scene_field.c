@@ -76,7 +76,7 @@ static void check_group(struct scene_reader *reader, const struct scene_path *pa
         if (json_object_get(object, field->key) == NULL)
             continue;
         struct scene_path here = {.parent = path, .key = field->key};
-        if (given != NULL)
+        if (given != NULL && !given->unsupported && !field->unsupported)
             scene_mistake(reader, &here, "contradiction", NULL, scene_word_list(words),
                           "'%s' and '%s' exclude each other", given->key, field->key);
         given = field;

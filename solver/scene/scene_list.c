@@ -71,18 +71,22 @@ void scene_names_check(struct scene_reader *reader, const struct scene_path *pat
     }
 }
 
-/* Looks a name up in an array of structs whose member `name` lies at the start. */
+/* Looks a name up in an array of structs whose member `name` lies at the start. Where the section
+ * itself could not be read there is nothing to look up, and nothing new to report. */
 static int find_entry(struct scene_reader *reader, const struct scene_path *path, const char *what,
-                      const json_t *given, const void *items, size_t item_size, size_t count)
+                      const char *section, const json_t *given, const void *items, size_t item_size,
+                      size_t count)
 {
     const char **names = calloc(count + 1, sizeof *names);
+    int found = -1;
     if (names == NULL) {
         reader->out_of_memory = true;
         return -1;
     }
     for (size_t index = 0; index < count; index++)
         memcpy(&names[index], (const char *)items + index * item_size, sizeof names[index]);
-    int found = scene_name_find(reader, path, what, given, names, count);
+    if (count > 0 || !scene_issues_under(reader->issues, section))
+        found = scene_name_find(reader, path, what, given, names, count);
     free(names);
     return found;
 }
@@ -97,14 +101,14 @@ int scene_material_find(struct scene_reader *reader, const struct scene_path *pa
                         const json_t *given)
 {
     const struct talus_scene *scene = reader->scene;
-    return find_entry(reader, path, "material", given, scene->materials, sizeof *scene->materials,
-                      scene->material_count);
+    return find_entry(reader, path, "material", "/materials", given, scene->materials,
+                      sizeof *scene->materials, scene->material_count);
 }
 
 int scene_body_find(struct scene_reader *reader, const struct scene_path *path, const json_t *given)
 {
     const struct talus_scene *scene = reader->scene;
-    return find_entry(reader, path, "body", given, scene->bodies, sizeof *scene->bodies,
+    return find_entry(reader, path, "body", "/bodies", given, scene->bodies, sizeof *scene->bodies,
                       scene->body_count);
 }
 
@@ -112,15 +116,15 @@ int scene_boundary_find(struct scene_reader *reader, const struct scene_path *pa
                         const json_t *given)
 {
     const struct talus_scene *scene = reader->scene;
-    return find_entry(reader, path, "boundary", given, scene->boundaries, sizeof *scene->boundaries,
-                      scene->boundary_count);
+    return find_entry(reader, path, "boundary", "/boundaries", given, scene->boundaries,
+                      sizeof *scene->boundaries, scene->boundary_count);
 }
 
 int scene_probe_find(struct scene_reader *reader, const struct scene_path *path,
                      const json_t *given)
 {
     const struct talus_scene *scene = reader->scene;
-    return find_entry(reader, path, "probe", given, scene->probes, sizeof *scene->probes,
+    return find_entry(reader, path, "probe", "/probes", given, scene->probes, sizeof *scene->probes,
                       scene->probe_count);
 }
 

@@ -242,7 +242,8 @@ static void finish_face(struct scene_reader *reader, const struct scene_path *pa
     const char *shown[7] = {NULL};
     struct scene_path here = {.parent = path, .key = "face"};
     probe->face_index = -1;
-    if (keys->face == NULL || probe->kind != TALUS_PROBE_REACTION || probe->boundary_index < 0)
+    if (keys->face == NULL || probe->kind != TALUS_PROBE_REACTION || probe->boundary_index < 0 ||
+        reader->axis_count == 0)
         return;
     const struct talus_boundary *boundary = &reader->scene->boundaries[probe->boundary_index];
     json_t *given = json_string(keys->face);

@@ -14,6 +14,10 @@ static void read_dimension(struct scene_reader *reader, const struct scene_path 
 {
     struct talus_scene *scene = target;
     int index = scene_choice_read(reader, path, given, dimension_words, dimension_lacking);
+    for (const char *const *word = dimension_lacking; index < 0 && *word != NULL; word++) {
+        if (json_is_string(given) && strcmp(*word, json_string_value(given)) == 0)
+            reader->axis_count = 2; /* planar: the vectors can still be checked */
+    }
     if (index < 0)
         return;
     scene->dimension = (enum talus_dimension)index;

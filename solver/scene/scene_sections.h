@@ -8,8 +8,8 @@
 
 /* Bounds on the lists of a scene, so that no scene of a few megabytes takes minutes to check. */
 enum {
-    SCENE_MATERIAL_MAX = 256,
-    SCENE_ENTRY_MAX = 1000, /* bodies, boundaries, probes, references */
+    SCENE_MATERIAL_MAX = 64, /* the solver's own limit */
+    SCENE_ENTRY_MAX = 1000,  /* bodies, boundaries, probes, references */
     SCENE_CURVE_MAX = 100000,
     SCENE_CELL_MAX = 1048576, /* cells per axis */
 };

@@ -6,7 +6,12 @@
 
 static const char *const kind_words[] = {"explicit", NULL};
 static const char *const kind_lacking[] = {"quasi_static", NULL};
-static const char *const shape_words[] = {"linear", NULL};
+static const char *const shape_words[] = {
+#define SHAPE(symbol) #symbol,
+#include "shapes/shapes.def"
+#undef SHAPE
+    NULL,
+};
 static const char *const shape_lacking[] = {"gimp",     "gimp_scaled", "cpdi",      "cpdi_hybrid",
                                             "bspline2", "bspline3",    "quadratic", NULL};
 static const char *const transfer_words[] = {"flip", NULL};

@@ -1,0 +1,130 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* Answers questions of the daemon: one JSON object a line in, one a line out, until the end of the
+ * input. Whatever is asked is answered; a bad question never ends the process. */
+#include "base/protocol.h"
+#include "output/render.h"
+#include "scene/scene_json.h"
+#include "worker/check_answer.h"
+#include "worker/command.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+static json_t *answer_check(const json_t *question)
+{
+    const json_t *scene = json_object_get(question, "scene");
+    json_int_t threads = json_integer_value(json_object_get(question, "threads"));
+    if (scene == NULL)
+        return check_answer_error("", "required", "'scene' is required");
+    return check_answer(scene, threads < 1 || threads > 4096 ? 1 : (int)threads);
+}
+
+static json_t *answer_describe(const json_t *question)
+{
+    (void)question;
+    return json_pack("{s:b, s:o}", "ok", 1, "describe", scene_describe());
+}
+
+static json_t *answer_schema(const json_t *question)
+{
+    (void)question;
+    return json_pack("{s:b, s:o}", "ok", 1, "schema", scene_schema());
+}
+
+/* The number at a key, `preset` where it is missing; -1 if it is not a whole number >= 0. */
+static json_int_t whole_number(const json_t *question, const char *key, json_int_t preset)
+{
+    const json_t *value = json_object_get(question, key);
+    if (value == NULL)
+        return preset;
+    return json_is_integer(value) && json_integer_value(value) >= 0 ? json_integer_value(value)
+                                                                    : -1;
+}
+
+static json_t *answer_render(const json_t *question)
+{
+    struct talus_error error = {.status = TALUS_OK};
+    const char *style = json_string_value(json_object_get(question, "style"));
+    json_int_t frame = whole_number(question, "frame", 0);
+    json_int_t width = whole_number(question, "width", 1000);
+    struct render_request request = {
+        .folder = json_string_value(json_object_get(question, "folder")),
+        .frame = (uint64_t)frame,
+        .field = json_string_value(json_object_get(question, "field")),
+        .width = width > RENDER_WIDTH_MAX ? RENDER_WIDTH_MAX + 1 : (int)width,
+        .output = json_string_value(json_object_get(question, "output")),
+    };
+    if (request.folder == NULL || request.output == NULL)
+        return check_answer_error("/folder", "required", "'folder' and 'output' are required");
+    if (frame < 0 || width < 0)
+        return check_answer_error(frame < 0 ? "/frame" : "/width", "type",
+                                  "expected a whole number");
+    enum talus_status status = TALUS_OK;
+    if (style != NULL)
+        status = render_find_style(style, &request.style, &error);
+    if (status == TALUS_OK)
+        status = render_frame(&request, &error);
+    if (status != TALUS_OK)
+        return check_answer_error(error.pointer, error.code, error.text);
+    return json_pack("{s:b}", "ok", 1);
+}
+
+static const struct operation {
+    const char *name;
+    json_t *(*answer)(const json_t *question);
+} operations[] = {
+    {"check", answer_check},
+    {"describe", answer_describe},
+    {"schema", answer_schema},
+    {"render", answer_render},
+};
+enum { OPERATION_COUNT = sizeof operations / sizeof operations[0] };
+
+static json_t *answer_question(const char *line, size_t length)
+{
+    json_error_t error;
+    json_t *question = json_loadb(line, length, JSON_REJECT_DUPLICATES, &error);
+    const char *name = json_string_value(json_object_get(question, "op"));
+    json_t *answer = NULL;
+    if (question == NULL)
+        return check_answer_error("", "json", error.text);
+    for (size_t index = 0; index < OPERATION_COUNT && name != NULL; index++) {
+        if (strcmp(operations[index].name, name) == 0)
+            answer = operations[index].answer(question);
+    }
+    if (answer == NULL)
+        answer =
+            check_answer_error("/op", "unknown_value", "'op' is check, describe, schema or render");
+    json_decref(question);
+    return answer;
+}
+
+/* Writes one answer line; false if the reader is gone. */
+static bool write_answer(json_t *answer)
+{
+    char *text = answer != NULL ? json_dumps(answer, JSON_COMPACT) : NULL;
+    int written = printf("%s\n", text != NULL ? text
+                                              : "{\"ok\":false,\"errors\":[{\"pointer\":\"\","
+                                                "\"code\":\"memory\",\"detail\":\"out of "
+                                                "memory\"}]}");
+    free(text);
+    json_decref(answer);
+    return written > 0 && fflush(stdout) == 0;
+}
+
+int command_helper(int argument_count, char **arguments)
+{
+    char *line = NULL;
+    size_t capacity = 0;
+    ssize_t length;
+    bool connected = true;
+    if (argument_count > 1) {
+        (void)fprintf(stderr, "talus-worker helper: unexpected argument '%s'\n", arguments[1]);
+        return PROTOCOL_EXIT_OTHER;
+    }
+    while (connected && (length = getline(&line, &capacity, stdin)) > 0)
+        connected = write_answer(answer_question(line, (size_t)length));
+    free(line);
+    return connected ? PROTOCOL_EXIT_SUCCEEDED : PROTOCOL_EXIT_OTHER;
+}
