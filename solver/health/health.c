@@ -7,7 +7,9 @@
 /* Energy may exceed the books by this share of the turnover before the run is called unstable; the
  * audit at the end is far stricter. */
 #define GROWTH_LIMIT 0.5
-enum { ENERGY_CHECK_INTERVAL = 64 };
+enum { ENERGY_CHECK_INTERVAL = 16 };
+/* A speed that has grown by this factor since the last check calls for one at once. */
+#define SPEED_JUMP 1.5
 
 /* "particle 12 (body 'column') at (0.1, 0.2, 0)" */
 static void name_particle(const struct run *run, uint32_t id, size_t body, const double position[3],
@@ -141,7 +143,7 @@ enum talus_status health_check_step(struct run *run, const struct tile_sums *sum
         return talus_error_set(error, TALUS_UNSTABLE, "non_finite", "",
                                "a particle velocity is not a number at t = %.6g s, step %llu; %s",
                                run->time, (unsigned long long)run->step, advice(run));
-    const bool jumped = speed > 2 * run->checked_speed && run->checked_speed > 0;
+    const bool jumped = speed > SPEED_JUMP * run->checked_speed && run->checked_speed > 0;
     run->largest_speed = speed;
     if (run->step > 1 && !jumped && run->step % ENERGY_CHECK_INTERVAL != 0)
         return TALUS_OK;

@@ -19,7 +19,7 @@ TALUS_MUST_CHECK enum talus_status health_check_outside(const struct run *run,
                                                         struct talus_error *error);
 
 /* After the second pass: det of the incremental deformation gradient, speeds, and, when the speed
- * has jumped or every 64 steps, energy against the work done. */
+ * has jumped or every 16 steps, energy against the work done. */
 TALUS_MUST_CHECK enum talus_status health_check_step(struct run *run, const struct tile_sums *sums,
                                                      struct talus_error *error);
 

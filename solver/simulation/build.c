@@ -144,6 +144,25 @@ static enum talus_status refuse_body_filters(const struct talus_scene *scene,
     return TALUS_OK;
 }
 
+/* Particles are taken out by a whole boundary, not by one face of a box. */
+static enum talus_status refuse_mixed_elimination(const struct talus_scene *scene,
+                                                  struct talus_error *error)
+{
+    for (size_t index = 0; index < scene->boundary_count; index++) {
+        const struct talus_boundary *boundary = &scene->boundaries[index];
+        size_t eliminating = 0;
+        char pointer[64];
+        for (size_t face = 0; face < boundary->face_count; face++)
+            eliminating += boundary_table[boundary->faces[face].condition_index]->eliminates;
+        if (eliminating == 0 || eliminating == boundary->face_count)
+            continue;
+        (void)snprintf(pointer, sizeof pointer, "/boundaries/%zu/faces", index);
+        return talus_error_set(error, TALUS_UNSUPPORTED, "unsupported", pointer,
+                               "a box eliminates particles with all its faces or with none");
+    }
+    return TALUS_OK;
+}
+
 /* The ring of a running mean holds the steps of a window, with room for steps four times shorter.
  */
 static enum talus_status build_windows(struct run *run, struct talus_error *error)
@@ -176,7 +195,8 @@ enum talus_status run_build(struct run *run, const struct talus_scene *scene, in
     if (scene->material_count > 64)
         return talus_error_set(error, TALUS_INVALID, "range", "/materials",
                                "%zu materials; at most 64 are possible", scene->material_count);
-    if (refuse_body_filters(scene, error) != TALUS_OK)
+    if (refuse_body_filters(scene, error) != TALUS_OK ||
+        refuse_mixed_elimination(scene, error) != TALUS_OK)
         return TALUS_UNSUPPORTED;
     run->threads = threads < 1 ? 1 : threads;
     run->finite_strain = scene->solver.strain == TALUS_STRAIN_FINITE;
