@@ -2,6 +2,8 @@
 /* Where particles are relative to boundaries: elimination, and probes that look "on" one. */
 #include "boundaries/boundary.h"
 
+#include <assert.h>
+
 static double along(const double axis[3], const double from[3], const double to[3])
 {
     return axis[0] * (to[0] - from[0]) + axis[1] * (to[1] - from[1]) + axis[2] * (to[2] - from[2]);
@@ -11,6 +13,7 @@ static bool within_rectangle(const struct wall_shape *shape, size_t axis_count,
                              const double position[3])
 {
     const double *axes[2] = {shape->axis_1, shape->axis_2};
+    assert(axis_count <= 3);
     for (size_t index = 0; index + 1 < axis_count; index++) {
         if (fabs(along(axes[index], shape->point, position)) > 0.5 * shape->size[index])
             return false;

@@ -2,6 +2,7 @@
 /* From boundaries in space to conditions at nodes. */
 #include "boundaries/boundary.h"
 
+#include <assert.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -112,6 +113,7 @@ static double tributary_area(const struct domain *domain, size_t axis, const int
                              const int32_t low[3], const int32_t high[3], bool source_rule)
 {
     double area = 1.0;
+    assert(domain->axis_count >= 1 && domain->axis_count <= 3);
     for (size_t other = 0; other < domain->axis_count; other++) {
         if (other == axis)
             continue;

@@ -110,8 +110,7 @@ static bool is_eliminated(const struct run *run, const struct particle_block *bl
             domain, axis, cell,
             particle_values(&run->grid.layout, block, PARTICLE_POSITION, axis)[slot]);
     }
-    return wall_set_eliminates(&run->walls, position,
-                               block->body == NULL ? 0 : block->body[slot]);
+    return wall_set_eliminates(&run->walls, position, block->body == NULL ? 0 : block->body[slot]);
 }
 
 /* Puts the particles that left their cells into the outbox; they scatter after they have moved. */

@@ -8,6 +8,7 @@
 #include "math/log1p_series.h"
 #include "math/log_strain.h"
 
+#include <assert.h>
 #include <string.h>
 
 /* det(1 + g) - 1 without cancellation. */
@@ -54,6 +55,7 @@ static void push_forward_3(size_t count, double *const L[9], double dt, double *
                            double *const out[6])
 {
     double *const *o = out;
+    assert(e[0] != NULL && e[3] != NULL && e[4] != NULL && e[5] != NULL);
 #pragma omp simd
     for (size_t i = 0; i < count; i++) {
         const double xx = dt * L[0][i], xy = dt * L[1][i], xz = dt * L[2][i];
@@ -86,6 +88,7 @@ static void push_forward_3(size_t count, double *const L[9], double dt, double *
 static void push_forward_2(size_t count, double *const L[9], double dt, double *const e[6],
                            double *const out[6])
 {
+    assert(e[0] != NULL && e[1] != NULL && e[2] != NULL && e[3] != NULL);
 #pragma omp simd
     for (size_t i = 0; i < count; i++) {
         const double xx = dt * L[0][i], xy = dt * L[1][i];
@@ -103,6 +106,7 @@ static void push_forward_2(size_t count, double *const L[9], double dt, double *
 static void push_forward_1(size_t count, double *const L[9], double dt, double *const e[6],
                            double *const out[6])
 {
+    assert(e[0] != NULL && e[1] != NULL && e[2] != NULL);
 #pragma omp simd
     for (size_t i = 0; i < count; i++) {
         const double g = dt * L[0][i], f = 1.0 + g;
@@ -195,6 +199,7 @@ static void advance_tensor(const struct run *run, const struct particle_block *b
                            struct block_scratch *scratch, size_t count, double time_step)
 {
     double *old[6] = {NULL};
+    assert(run->stored_components <= 6 && run->strain_components == run->stored_components);
     for (uint32_t component = 0; component < run->stored_components; component++)
         old[component] = particle_values(&run->grid.layout, block, PARTICLE_STRAIN, component);
     if (!run->finite_strain) {
@@ -301,6 +306,7 @@ void kinematics_load(const struct run *run, const struct particle_block *block,
     const double *volume = particle_values(&run->grid.layout, block, PARTICLE_VOLUME, 0);
     reference_volumes(run, block, scratch, count);
     double *stored[6] = {NULL};
+    assert(run->stored_components >= 1 && run->stored_components <= 6);
     for (uint32_t component = 0; component < run->stored_components; component++) {
         stored[component] = particle_values(&run->grid.layout, block, PARTICLE_STRAIN, component);
         memcpy(scratch->strain[component], stored[component], count * sizeof(double));

@@ -4,6 +4,7 @@
 #include "antilocking/anti_locking.h"
 #include "math/log1p_series.h"
 
+#include <assert.h>
 #include <string.h>
 
 /* Bit set of the materials with particles in the block. */
@@ -122,6 +123,7 @@ static void update_compacted(const struct run *run, const struct particle_block 
     const size_t state_count = run->materials[material].model->state_count;
     double *history[SCRATCH_HISTORY_MAX] = {NULL};
     history_arrays(run, block, history);
+    assert(state_count <= run->grid.layout.component_count[PARTICLE_HISTORY]);
     struct material_batch batch = {.component_count = run->strain_components,
                                    .time_step = time_step,
                                    .volume_ratio = scratch->compact_volume_ratio,

@@ -5,6 +5,7 @@
 #include "boundaries/contact.h"
 #include "explicit/run.h"
 
+#include <assert.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -22,6 +23,7 @@ static int append_wall_nodes(struct run *run, size_t block)
 {
     const struct domain *domain = &run->grid.domain;
     const int32_t *place = run->grid.nodes.place[block];
+    assert(domain->axis_count >= 1 && domain->axis_count <= 3);
     run->block_walled[block] = false;
     for (int lane = 0; lane < LANE_COUNT; lane++) {
         const int32_t node[3] = {place[0] + lane, place[1], place[2]};
@@ -354,6 +356,7 @@ static void book_body_forces(struct run *run, double factor)
     const struct node_blocks *nodes = &run->grid.nodes;
     const bool last = run->scene.solver.stress_update == TALUS_STRESS_LAST;
     const bool damped = run->scene.solver.local_damping > 0;
+    assert(run->grid.domain.axis_count <= 3);
     double mass_sum = 0, impulse[3] = {0, 0, 0}, energy = 0;
     for (size_t block = 0; block < nodes->count; block++) {
         const double *mass = node_values(nodes, block, nodes->layout.mass);

@@ -4,6 +4,7 @@
 #include "explicit/run.h"
 #include "health/health.h"
 
+#include <assert.h>
 #include <math.h>
 #include <string.h>
 
@@ -51,6 +52,7 @@ static enum talus_status move_record(struct run *run, const struct outbox_record
     if (status != TALUS_OK)
         return status;
     double position[3] = {0, 0, 0};
+    assert(run->grid.domain.axis_count <= 3);
     for (uint32_t axis = 0; axis < run->grid.domain.axis_count; axis++)
         position[axis] = domain_position(
             &run->grid.domain, axis, cell[axis],

@@ -2,6 +2,7 @@
 /* Histories: the columns of a scene and the values of one row. */
 #include "simulation/simulation_private.h"
 
+#include <assert.h>
 #include <math.h>
 #include <stdarg.h>
 #include <stdio.h>
@@ -52,6 +53,7 @@ static size_t first_moment(const struct talus_scene *scene)
 static void add_reaction(struct column_writer *writer, const char *name)
 {
     const struct talus_scene *scene = writer->scene;
+    assert(scene->axis_count >= 1 && scene->axis_count <= 3);
     const char *force = extensive_unit(scene, "N", "N/m", "N/m^2");
     for (size_t axis = 0; axis < scene->axis_count; axis++)
         add_column(writer, force, "reaction.%s.force.%c", name, axis_names[axis]);

@@ -3,6 +3,7 @@
 #include "math/log_strain.h"
 #include "simulation/simulation_private.h"
 
+#include <assert.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -208,6 +209,7 @@ enum talus_status talus_simulation_read_field(const struct talus_simulation *sim
                                               struct talus_error *error)
 {
     const struct run *run = &simulation->run;
+    assert(field < TALUS_FIELD_COUNT);
     if (!field_is_stored(run, field))
         return talus_error_set(error, TALUS_UNSUPPORTED, "field", "/output/frames/fields",
                                "the scene did not ask for %s, so it was not tracked",
@@ -260,8 +262,10 @@ static void write_node(const struct run *run, size_t block, size_t lane,
     }
 }
 
+/* NOLINTBEGIN(readability-non-const-parameter): written through `out` */
 size_t talus_simulation_read_nodes(const struct talus_simulation *simulation, double *position,
                                    double *mass, double *velocity, double *reaction, double *area)
+/* NOLINTEND(readability-non-const-parameter) */
 {
     const struct run *run = &simulation->run;
     const struct node_blocks *nodes = &run->grid.nodes;

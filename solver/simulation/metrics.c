@@ -2,6 +2,7 @@
 /* Final figures: audits and peaks. */
 #include "simulation/simulation_private.h"
 
+#include <assert.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -29,6 +30,7 @@ static void add_peaks(struct talus_simulation *simulation, const char *name,
                       const struct wall_record *record)
 {
     char prefix[144], part[16];
+    assert(simulation->run.scene.axis_count <= 3);
     (void)snprintf(prefix, sizeof prefix, "reaction.%.120s.", name);
     add_metric(simulation, prefix, "peak", record->peak);
     add_metric(simulation, prefix, "peak_time", record->peak_time);

@@ -2,6 +2,7 @@
 /* Probes: what is measured on particles, energies and reactions at each sample. */
 #include "simulation/simulation_private.h"
 
+#include <assert.h>
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -36,6 +37,7 @@ static size_t full_components(const struct talus_scene *scene, const struct talu
 
 static const char *suffix_of(size_t full, size_t component)
 {
+    assert(component < full && full <= 9 && (full == 9 || full == 6 || full <= 3));
     return full == 9   ? matrix_suffix[component]
            : full == 6 ? tensor_suffix[component]
                        : vector_suffix[component];
@@ -50,6 +52,7 @@ static void probe_unit(const struct talus_scene *scene, const struct talus_probe
     static const char *const moment[3] = {"N/m", "N", "N m"};
     static const char *const area[3] = {"1", "m", "m^2"};
     static const char *const volume[3] = {"m", "m^2", "m^3"};
+    assert(scene->axis_count >= 1 && scene->axis_count <= 3);
     const size_t axes = scene->axis_count - 1;
     const char *name = "m";
     if (probe->kind == TALUS_PROBE_POINT)
@@ -282,6 +285,27 @@ void probe_sample(const struct talus_simulation *simulation, size_t probe_index,
     }
 }
 
+/* Looks through one block for a particle nearer to the probe than *nearest; of several equally near
+ * ones the one with the smallest id counts. */
+static void locate_in_block(const struct run *run, const struct talus_probe *probe,
+                            const struct particle_block *block, double *nearest, uint32_t *id)
+{
+    for (size_t slot = 0; slot < (size_t)block->row_count * LANE_COUNT; slot++) {
+        double position[3], square = 0;
+        const bool other =
+            probe->body_index >= 0 && block->body != NULL && block->body[slot] != probe->body_index;
+        if (block->id[slot] == PARTICLE_NONE || other)
+            continue;
+        run_slot_position(run, block, slot, position);
+        for (size_t axis = 0; axis < 3; axis++)
+            square += (position[axis] - probe->at[axis]) * (position[axis] - probe->at[axis]);
+        if (square < *nearest || (square == *nearest && block->id[slot] < *id)) {
+            *nearest = square;
+            *id = block->id[slot];
+        }
+    }
+}
+
 void probes_locate(struct talus_simulation *simulation)
 {
     const struct run *run = &simulation->run;
@@ -289,26 +313,10 @@ void probes_locate(struct talus_simulation *simulation)
         const struct talus_probe *probe = &run->scene.probes[index];
         double nearest = INFINITY;
         simulation->probe_ids[index] = PARTICLE_NONE;
-        for (size_t entry = 0; probe->kind == TALUS_PROBE_POINT && entry < run->grid.block_count;
-             entry++) {
-            const struct particle_block *block = &run->grid.blocks[entry];
-            for (size_t slot = 0; slot < (size_t)block->row_count * LANE_COUNT; slot++) {
-                double position[3], square = 0;
-                run_slot_position(run, block, slot, position);
-                const bool other = probe->body_index >= 0 && block->body != NULL &&
-                                   block->body[slot] != probe->body_index;
-                if (block->id[slot] == PARTICLE_NONE || other)
-                    continue;
-                for (size_t axis = 0; axis < 3; axis++)
-                    square +=
-                        (position[axis] - probe->at[axis]) * (position[axis] - probe->at[axis]);
-                /* Of several equally near ones the one with the smallest id. */
-                if (square < nearest ||
-                    (square == nearest && block->id[slot] < simulation->probe_ids[index])) {
-                    nearest = square;
-                    simulation->probe_ids[index] = block->id[slot];
-                }
-            }
-        }
+        if (probe->kind != TALUS_PROBE_POINT)
+            continue;
+        for (size_t entry = 0; entry < run->grid.block_count; entry++)
+            locate_in_block(run, probe, &run->grid.blocks[entry], &nearest,
+                            &simulation->probe_ids[index]);
     }
 }

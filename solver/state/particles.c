@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 #include "state/particles.h"
 
+#include <assert.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -48,15 +49,17 @@ int particle_block_reserve(const struct particle_layout *layout, struct particle
     memset(chunk, 0, bytes);
     const struct particle_block old = *block;
     chunk_attach(layout, block, chunk, capacity);
+    assert(block->id != NULL);
     memset(block->id, 0xFF, (size_t)capacity * LANE_COUNT * sizeof *block->id);
     const size_t old_slots = (size_t)old.row_capacity * LANE_COUNT;
     const size_t slots = (size_t)capacity * LANE_COUNT;
     if (old.data != NULL) {
+        assert(block->data != NULL && old.id != NULL);
         for (size_t component = 0; component < layout->double_count; component++)
             memcpy(block->data + component * slots, old.data + component * old_slots,
                    old_slots * sizeof(double));
         memcpy(block->id, old.id, old_slots * sizeof *old.id);
-        if (old.body != NULL)
+        if (block->body != NULL && old.body != NULL)
             memcpy(block->body, old.body, old_slots * sizeof *old.body);
         free(old.data);
     }
