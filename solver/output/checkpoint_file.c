@@ -106,6 +106,18 @@ static enum talus_status read_blob(hid_t group, size_t index, struct talus_blob 
     return status;
 }
 
+/* Room for `count` blobs. */
+static enum talus_status allocate_blobs(struct checkpoint *checkpoint, size_t count,
+                                        struct talus_error *error)
+{
+    checkpoint->blobs = calloc(count + 1, sizeof *checkpoint->blobs);
+    checkpoint->memory = calloc(count + 1, sizeof *checkpoint->memory);
+    if (checkpoint->blobs == NULL || checkpoint->memory == NULL)
+        return talus_error_set(error, TALUS_MEMORY, "memory", "", "out of memory for a checkpoint");
+    checkpoint->blob_count = count;
+    return TALUS_OK;
+}
+
 static enum talus_status read_blobs(struct checkpoint *checkpoint, hid_t file,
                                     struct talus_error *error)
 {
@@ -117,18 +129,11 @@ static enum talus_status read_blobs(struct checkpoint *checkpoint, hid_t file,
     if (H5Gget_info(group, &information) < 0) {
         status = hdf5_error(error, "inspect group", "blobs");
     } else {
-        size_t count = (size_t)information.nlinks;
-        checkpoint->blobs = calloc(count + 1, sizeof *checkpoint->blobs);
-        checkpoint->memory = calloc(count + 1, sizeof *checkpoint->memory);
-        if (checkpoint->blobs == NULL || checkpoint->memory == NULL)
-            status = talus_error_set(error, TALUS_MEMORY, "memory", "",
-                                     "out of memory for a checkpoint");
-        else
-            checkpoint->blob_count = count;
+        status = allocate_blobs(checkpoint, (size_t)information.nlinks, error);
+        for (size_t index = 0; status == TALUS_OK && index < checkpoint->blob_count; index++)
+            status = read_blob(group, index, &checkpoint->blobs[index], &checkpoint->memory[index],
+                               error);
     }
-    for (size_t index = 0; status == TALUS_OK && index < checkpoint->blob_count; index++)
-        status =
-            read_blob(group, index, &checkpoint->blobs[index], &checkpoint->memory[index], error);
     (void)H5Gclose(group);
     return status;
 }

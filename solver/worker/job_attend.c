@@ -4,10 +4,10 @@
 #include <stdio.h>
 
 /* Seconds between history events; between progress lines where nobody watches. */
-static const double HISTORY_INTERVAL = 0.25;
-static const double PRINT_INTERVAL = 10.0, PRINT_INTERVAL_TERMINAL = 0.25;
+static const double history_interval = 0.25;
+static const double print_interval_plain = 10.0, print_interval_terminal = 0.25;
 /* Tables are replaced at checkpoints as long as that costs less than this share of the time. */
-static const double TABLES_SHARE = 0.05;
+static const double tables_share = 0.05;
 /* So many warnings are passed on, then one that says so. */
 enum { WARNING_MAX = 200 };
 
@@ -96,7 +96,7 @@ static enum talus_status keep_events(struct job_run *run, double now, struct tal
 {
     enum talus_status status = job_pass_warnings(run, error);
     double interval = progress_interval(run, now);
-    if (status == TALUS_OK && now - run->clock.history >= HISTORY_INTERVAL * interval) {
+    if (status == TALUS_OK && now - run->clock.history >= history_interval * interval) {
         run->clock.history = now;
         status = job_announce_history(run, error);
     }
@@ -104,7 +104,7 @@ static enum talus_status keep_events(struct job_run *run, double now, struct tal
         run->clock.progress = now;
         status = job_report_progress(run, now, error);
     }
-    double print_interval = run->log.terminal ? PRINT_INTERVAL_TERMINAL : PRINT_INTERVAL;
+    double print_interval = run->log.terminal ? print_interval_terminal : print_interval_plain;
     if (status == TALUS_OK && now - run->clock.printed >= print_interval) {
         run->clock.printed = now;
         job_print_progress(run, now, false);
@@ -120,7 +120,7 @@ static enum talus_status keep_checkpoints(struct job_run *run, double now,
         return TALUS_OK;
     enum talus_status status = job_write_checkpoint(run, error);
     double since = now - run->clock.tables;
-    if (status == TALUS_OK && run->clock.tables_cost <= TABLES_SHARE * since) {
+    if (status == TALUS_OK && run->clock.tables_cost <= tables_share * since) {
         double begin = job_now();
         status = job_write_tables(run, NULL, error);
         run->clock.tables = begin;

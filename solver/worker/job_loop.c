@@ -6,7 +6,7 @@
 #include <time.h>
 
 /* Seconds between two looks at signals, limits and clocks: short for people, long for steps. */
-static const double ATTEND_INTERVAL = 0.005;
+static const double attend_interval = 0.005;
 
 double job_now(void)
 {
@@ -83,7 +83,7 @@ enum talus_status job_loop(struct job_run *run, struct talus_error *error)
         if (state.finished)
             break;
         status = take_due(run, &state, error);
-        if (status == TALUS_OK && now - run->clock.attended >= ATTEND_INTERVAL)
+        if (status == TALUS_OK && now - run->clock.attended >= attend_interval)
             status = job_attend(run, now, error);
         if (status != TALUS_OK)
             return status;

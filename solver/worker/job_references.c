@@ -9,12 +9,12 @@
 
 /* A time this much beyond the last row, relative to it, still counts as its time: the last step is
  * rounded to the end of the run. */
-static const double TIME_TOLERANCE = 1e-9;
+static const double time_tolerance = 1e-9;
 
 static bool read_at(const struct history_table *table, size_t column, double time, double *value)
 {
     double last = history_value(table, table->row_count - 1, 0);
-    if (time > last && time <= last * (1.0 + TIME_TOLERANCE))
+    if (time > last && time <= last * (1.0 + time_tolerance))
         time = last;
     return history_interpolate(table, column, time, value);
 }
