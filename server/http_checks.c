@@ -67,7 +67,7 @@ static enum MHD_Result field_visit(void *context, enum MHD_ValueKind kind, const
 static void refuse(struct request *request, unsigned int status, const char *code,
                    const char *detail)
 {
-    reply_problem(&request->reply, status, code, NULL, NULL, "%s", detail);
+    reply_problem(&request->reply, status, code, request->raw, NULL, "%s", detail);
     request->reply.close = true;
 }
 
@@ -110,7 +110,8 @@ static bool host_is_loopback(const char *host)
     char *colon = name[0] == '[' ? strstr(name, "]:") : strchr(name, ':');
     if (colon != NULL) {
         colon += name[0] == '[';
-        if (strspn(colon + 1, "0123456789") != strlen(colon + 1))
+        if (strspn(colon + 1, "0123456789") != strlen(colon + 1) || strlen(colon + 1) > 5 ||
+            strtol(colon + 1, NULL, 10) > 65535)
             return false;
         *colon = '\0';
     }

@@ -48,7 +48,9 @@ static json_t *progress_json(struct service *service, const struct job *job)
 {
     json_t *progress =
         job->state == JOB_RUNNING ? supervisor_progress(service->supervisor, job->id) : NULL;
-    return progress != NULL ? progress : document_json(job->progress, "null");
+    return progress != NULL
+               ? progress
+               : document_json(job->progress, "{\"fraction\":0,\"time\":0,\"step\":0}");
 }
 
 json_t *jobs_json(struct service *service, const struct job *job)

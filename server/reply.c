@@ -110,6 +110,13 @@ static const char *problem_title(unsigned int status)
     return "Internal error";
 }
 
+/* A string, whatever bytes a client sent. */
+static json_t *text_json(const char *text)
+{
+    json_t *string = json_string(text == NULL ? "" : text);
+    return string == NULL ? json_string("(not UTF-8)") : string;
+}
+
 void reply_problem(struct reply *reply, unsigned int status, const char *code, const char *instance,
                    json_t *errors, const char *format, ...)
 {
@@ -122,8 +129,9 @@ void reply_problem(struct reply *reply, unsigned int status, const char *code, c
     while (json_array_size(errors) > PROBLEM_ERROR_MAX)
         (void)json_array_remove(errors, json_array_size(errors) - 1);
     json_t *document =
-        json_pack("{s:s, s:s, s:i, s:s, s:s*, s:o*}", "type", type, "title", problem_title(status),
-                  "status", (int)status, "detail", detail, "instance", instance, "errors", errors);
+        json_pack("{s:s, s:s, s:i, s:o, s:o, s:o*}", "type", type, "title", problem_title(status),
+                  "status", (int)status, "detail", text_json(detail), "instance",
+                  text_json(instance), "errors", errors);
     reply_document(reply, status, "application/problem+json", document);
     reply_header(reply, MHD_HTTP_HEADER_CACHE_CONTROL, "no-store");
     if (status == MHD_HTTP_SERVICE_UNAVAILABLE || status == MHD_HTTP_TOO_MANY_REQUESTS)

@@ -4,7 +4,7 @@
 #include <stdio.h>
 #include <string.h>
 
-const double scheduler_patience = 30;
+const double scheduler_patience = 10;
 
 size_t scheduler_pick(struct scheduler *scheduler, const struct scheduler_candidate *candidates,
                       size_t count, int64_t free_threads, double now)

@@ -19,7 +19,7 @@
 #include <unistd.h>
 
 enum { TICK_MILLISECONDS = 50, CANDIDATES_MAX = 64 };
-static const double disk_check_seconds = 2;
+static const double disk_check_seconds = 0.5;
 static const double spawn_retry_seconds = 1;
 
 struct supervisor {

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 #include "target.h"
 
+#include <jansson.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -39,7 +40,9 @@ static const char *decode(char *text, bool plus_is_space)
         in += 2;
     }
     *out = '\0';
-    return NULL;
+    json_t *probe = json_string(text);
+    json_decref(probe);
+    return probe == NULL ? "the escapes are not UTF-8" : NULL;
 }
 
 static const char *path_parse(struct target *target, char *path)

@@ -36,6 +36,7 @@ enum handled handle_job_events(struct request *request)
         if (stream.done && stream.out.length == 0) {
             /* Tells a browser's EventSource not to connect again. */
             reply_empty(&request->reply, MHD_HTTP_NO_CONTENT);
+            request->reply.close = true;
             event_stream_close(&stream);
         } else {
             events_subscribe(request->service->events, request, &stream);
