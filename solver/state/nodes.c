@@ -4,8 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-void node_layout_init(struct node_layout *layout, size_t axis_count,
-                      bool momentum_outlives_velocity)
+void node_layout_init(struct node_layout *layout, size_t axis_count)
 {
     const uint32_t axes = (uint32_t)axis_count;
     layout->mass = 0;
@@ -13,7 +12,6 @@ void node_layout_init(struct node_layout *layout, size_t axis_count,
     layout->momentum = 1 + axes;
     layout->kick = 1 + 2 * axes;
     layout->correction = 1 + 3 * axes;
-    layout->velocity = momentum_outlives_velocity ? layout->kick : layout->momentum;
     layout->component_count = 1 + 4 * axes;
 }
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-#include "output/digest.h"
+#include "base/digest.h"
 #include "output/file.h"
 #include "output/frame.h"
 #include "worker/job_run.h"

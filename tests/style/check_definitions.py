@@ -10,21 +10,39 @@ LISTS = {
     "solver/materials/materials.def":
         ("MATERIAL", "solver/materials/{}.c", r"^const struct material (\w+) = "),
     "solver/shapes/shapes.def":
-        ("SHAPE", "solver/shapes/{}.c", r"^const struct shape (\w+) = "),
+        ("SHAPE", "solver/shapes/{}.c", r"^const struct shape shape_(\w+) = "),
     "solver/boundaries/boundaries.def":
-        ("BOUNDARY", "solver/boundaries/{}.c", r"^const struct boundary_condition (\w+) = "),
+        ("BOUNDARY", "solver/boundaries/{}.c", r"^const struct boundary_condition boundary_(\w+) = "),
     "solver/transfers/transfers.def":
         ("TRANSFER", "solver/transfers/{}.c", r"^const struct transfer (\w+) = "),
     "solver/worker/commands.def":
         ("COMMAND", "solver/worker/command_{}.c", r"^int command_(\w+)\("),
     "clients/cli/subcommands.def":
-        ("SUBCOMMAND", "clients/cli/subcommand_{}.c", r"^int subcommand_(\w+)\("),
+        ("SUBCOMMAND", "clients/cli/subcommand_{}.c", r"^const struct subcommand subcommand_(\w+) = "),
 }
 # Lists of data, without a file for each line.
 DATA_LISTS = {
     "include/talus/fields.def",
+    "server/config.def",
+    "server/job_columns.def",
+    "server/job_states.def",
     "solver/base/messages.def",
+    "solver/materials/mobilised_parameters.def",
+    "solver/state/particle_fields.def",
 }
+
+
+ROUTES = "server/routes.def"
+HANDLERS = "server/handlers/"
+
+
+def check_routes(tree):
+    """Every route has its handler somewhere in server/handlers/, every handler its route."""
+    routed = set(re.findall(r"^ROUTE\(.*, (\w+)\)", tree[ROUTES], re.MULTILINE))
+    defined = {name for file, text in tree.items() if file.startswith(HANDLERS)
+               for name in re.findall(r"^enum handled handle_(\w+)\(", text, re.MULTILINE)}
+    return ([f"{ROUTES}: no handler handle_{name}" for name in sorted(routed - defined)] +
+            [f"{HANDLERS}: handle_{name} has no route" for name in sorted(defined - routed)])
 
 
 def check_list(path, tree):
@@ -51,7 +69,9 @@ def check_definitions(tree):
     for path in tree:
         if not path.endswith(".def") or path in DATA_LISTS:
             continue
-        if path in LISTS:
+        if path == ROUTES:
+            problems.extend(check_routes(tree))
+        elif path in LISTS:
             problems.extend(check_list(path, tree))
         else:
             problems.append(f"{path}: unknown list; give it a line in check_definitions.py")

@@ -12,7 +12,7 @@ from source_tree import main
 # Folder under solver/ -> folders under solver/ whose headers it may include besides its own.
 CORE = {"base", "math", "state"}
 KINDS = {"shapes", "materials", "boundaries"}
-STAGES = {"transfers", "antilocking", "kernels", "health"}
+STAGES = {"transfers", "antilocking", "kernels"}
 ALLOWED = {
     "base": set(),
     "math": {"base"},
@@ -24,9 +24,10 @@ ALLOWED = {
     "transfers": CORE | KINDS,
     "antilocking": CORE | KINDS,
     "kernels": CORE | KINDS,
-    "health": CORE | KINDS,
-    "explicit": CORE | KINDS | STAGES | {"seeding"},
-    "simulation": CORE | KINDS | STAGES | {"seeding", "explicit"},
+    # What health judges is the run that the time step owns, and the step asks it: one layer.
+    "health": CORE | KINDS | {"explicit"},
+    "explicit": CORE | KINDS | STAGES | {"health"},
+    "simulation": CORE | KINDS | STAGES | {"seeding", "explicit", "health"},
     "scene": CORE | KINDS | {"seeding"},
     "output": CORE,
     "worker": {"base", "math", "shapes", "materials", "boundaries", "scene", "output"},
@@ -42,7 +43,7 @@ LIBRARIES = {
     r"jansson\.h": ("solver/scene/", "solver/output/", "solver/worker/", "server/", "clients/cli/"),
     r"hdf5(_hl)?\.h": ("solver/output/",),
     r"cairo.*": ("solver/output/",),
-    r"openssl/.*": ("solver/scene/", "solver/output/", "server/", "clients/cli/"),
+    r"openssl/.*": ("solver/base/", "solver/scene/", "solver/output/", "server/"),
     r"microhttpd\.h": ("server/",),
     r"sqlite3\.h": ("server/",),
     r"curl/.*": ("clients/cli/",),

@@ -62,6 +62,13 @@ class OtherRules(unittest.TestCase):
         without_line = dict(listed)
         without_line["solver/materials/tresca.c"] = "const struct material tresca = {\n"
         self.assertEqual(len(check_definitions(without_line)), 1)
+        routes = {"server/routes.def": 'ROUTE(GET, "v1/jobs/*", QUICK, job)\n',
+                  "server/handlers/handle_job.c": "enum handled handle_job(struct request *r)\n"}
+        self.assertEqual(check_definitions(routes), [])
+        routes["server/handlers/handle_log.c"] = "enum handled handle_log(struct request *r)\n"
+        self.assertEqual(len(check_definitions(routes)), 1)
+        del routes["server/handlers/handle_job.c"]
+        self.assertEqual(len(check_definitions(routes)), 2)
         self.assertEqual(len(check_definitions({"solver/new.def": "X(y)\n"})), 1)
 
 
