@@ -132,6 +132,21 @@ static void symmetric_rate(size_t count, size_t axis_count, double *const L[9],
     }
 }
 
+static void spin_rate(size_t count, size_t axis_count, double *const L[9], double *const spin[3])
+{
+    static const unsigned char row[3] = {0, 1, 0}, column[3] = {1, 2, 2};
+    for (size_t component = 0; component < 3; component++) {
+        if (column[component] >= axis_count)
+            continue; /* stays zero */
+        const double *a = L[3 * row[component] + column[component]];
+        const double *b = L[3 * column[component] + row[component]];
+        double *restrict out = spin[component];
+#pragma omp simd
+        for (size_t i = 0; i < count; i++)
+            out[i] = 0.5 * (a[i] - b[i]);
+    }
+}
+
 /* Which material a slot belongs to. */
 static const struct run_material *material_of(const struct run *run,
                                               const struct particle_block *block, size_t slot)
@@ -259,6 +274,8 @@ double kinematics_advance(struct run *run, struct particle_block *block,
     const size_t count = (size_t)block->row_count * LANE_COUNT;
     reference_volumes(run, block, scratch, count);
     symmetric_rate(count, run->grid.domain.axis_count, scratch->gradient, scratch->rate);
+    if (run->any_spin && run->finite_strain)
+        spin_rate(count, run->grid.domain.axis_count, scratch->gradient, scratch->spin);
     const double least = advance_volume(run, block, scratch, count, time_step);
     if (run->any_tensor)
         advance_tensor(run, block, scratch, count, time_step);

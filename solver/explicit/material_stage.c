@@ -112,6 +112,8 @@ static void update_single(const struct run *run, const struct particle_block *bl
         batch.rate[component] = scratch->rate[component];
         batch.stress[component] = scratch->stress[component];
     }
+    for (size_t component = 0; run->finite_strain && component < 3; component++)
+        batch.spin[component] = scratch->spin[component];
     run->materials[material].model->update_stress(run->materials[material].constants, &batch);
 }
 
@@ -135,6 +137,8 @@ static void update_compacted(const struct run *run, const struct particle_block 
         batch.rate[component] = scratch->compact_rate[component];
         batch.stress[component] = scratch->compact_stress[component];
     }
+    for (size_t component = 0; run->finite_strain && component < 3; component++)
+        batch.spin[component] = scratch->compact_spin[component];
     size_t used = 0;
     for (size_t slot = 0; slot < slot_count; slot++) {
         if (block->id[slot] == PARTICLE_NONE || material_of_slot(run, block, slot) != material)
@@ -143,6 +147,8 @@ static void update_compacted(const struct run *run, const struct particle_block 
             scratch->compact_strain[component][used] = scratch->strain[component][slot];
             scratch->compact_rate[component][used] = scratch->rate[component][slot];
         }
+        for (size_t component = 0; component < 3; component++)
+            scratch->compact_spin[component][used] = scratch->spin[component][slot];
         for (size_t index = 0; index < state_count; index++)
             scratch->compact_history[index][used] = history[index][slot];
         scratch->compact_volume_ratio[used++] = scratch->volume_ratio[slot];
@@ -151,6 +157,8 @@ static void update_compacted(const struct run *run, const struct particle_block 
     for (size_t empty = used; empty < batch.count; empty++) {
         for (size_t component = 0; component < run->strain_components; component++)
             scratch->compact_strain[component][empty] = scratch->compact_rate[component][empty] = 0;
+        for (size_t component = 0; component < 3; component++)
+            scratch->compact_spin[component][empty] = 0;
         for (size_t index = 0; index < state_count; index++)
             scratch->compact_history[index][empty] = 0;
         scratch->compact_volume_ratio[empty] = 1;
@@ -213,9 +221,12 @@ void material_stage_energy(const struct run *run, const struct particle_block *b
 {
     const size_t count = (size_t)block->row_count * LANE_COUNT;
     const uint64_t present = materials_present(run, block);
+    double *history[SCRATCH_HISTORY_MAX] = {NULL};
+    history_arrays(run, block, history);
     struct material_batch batch = {.count = count,
                                    .component_count = run->strain_components,
-                                   .volume_ratio = scratch->volume_ratio};
+                                   .volume_ratio = scratch->volume_ratio,
+                                   .history = history};
     for (size_t component = 0; component < run->strain_components; component++)
         batch.strain[component] = scratch->strain[component];
     memset(energy, 0, count * sizeof *energy);

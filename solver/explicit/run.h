@@ -95,7 +95,7 @@ struct run {
     struct sparse_grid grid;
     struct run_material *materials; /* [scene.material_count] owned */
     uint16_t *body_material;        /* [scene.body_count] owned */
-    bool finite_strain, any_volumetric, any_tensor, any_plastic, any_rate;
+    bool finite_strain, any_volumetric, any_tensor, any_plastic, any_rate, any_spin;
     size_t strain_components; /* that the materials see: 3, 4 or 6 */
     size_t
         stored_components; /* of PARTICLE_STRAIN: the same, or 1 if all materials are volumetric */

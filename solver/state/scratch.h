@@ -18,6 +18,7 @@ struct block_scratch {
     double *stored[6];        /* trial strain in the stored form (e, or small strain, or ln J) */
     double *strain[6];        /* trial, then elastic strain for the material */
     double *rate[6];          /* d = sym L [1/s] */
+    double *spin[3];          /* (L - L^T)/2: xy, yz, xz [1/s]; zero beyond the dimension */
     double *volume_ratio;     /* J */
     double *reference_volume; /* V0 [m^3]; 0 in empty slots */
     double *weight;           /* averaging weight: mass, 0 in empty slots [kg] */
@@ -31,7 +32,7 @@ struct block_scratch {
     double *force_stress[6]; /* V0 x Kirchhoff stress, with bulk damping [J] */
     double *mass;            /* [kg]; 0 where the particle has left its cell */
     /* a second set for compacting one material out of a mixed block */
-    double *compact_strain[6], *compact_rate[6], *compact_stress[6];
+    double *compact_strain[6], *compact_rate[6], *compact_spin[3], *compact_stress[6];
     double *compact_history[SCRATCH_HISTORY_MAX];
     double *compact_volume_ratio, *compact_plastic_strain, *compact_dissipation;
 };
