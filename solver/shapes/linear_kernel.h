@@ -6,7 +6,11 @@
 #define CONCAT(a, b) CONCAT_(a, b)
 #define LOCAL(name) CONCAT(name, DIMENSION)
 #define BASIS (1 << DIMENSION)
+#ifdef __OPTIMIZE__
 #define UNROLL _Pragma("GCC unroll 8")
+#else
+#define UNROLL /* gcc warns where it cannot follow it */
+#endif
 
 /* phi_s at the particles of one row. */
 static inline void LOCAL(basis)(const lanes position[DIMENSION], lanes phi[BASIS])
