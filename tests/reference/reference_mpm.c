@@ -1,0 +1,328 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+#include "reference_mpm.h"
+
+#include "materials/material.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Weight and gradient of the hat function of a node at a point (Mast 2013, sec. 2.4.1). */
+static double hat(const struct reference *reference, const int node[3], const double position[3],
+                  double gradient[3])
+{
+    const struct talus_grid *grid = &reference->scene->grid;
+    double value[3] = {1, 1, 1}, slope[3] = {0, 0, 0};
+    for (size_t axis = 0; axis < reference->scene->axis_count; axis++) {
+        const double h = grid->cell[axis];
+        const double x = position[axis] - (grid->min[axis] + node[axis] * h);
+        value[axis] = fabs(x) < h ? 1.0 - fabs(x) / h : 0.0;
+        slope[axis] = fabs(x) < h ? (x > 0 ? -1.0 : 1.0) / h : 0.0;
+    }
+    gradient[0] = slope[0] * value[1] * value[2];
+    gradient[1] = value[0] * slope[1] * value[2];
+    gradient[2] = value[0] * value[1] * slope[2];
+    return value[0] * value[1] * value[2];
+}
+
+struct support { /* the nodes around a particle */
+    int count;
+    struct reference_node *node[8];
+    double weight[8], gradient[8][3];
+};
+
+static size_t node_index(const struct reference *reference, const int node[3])
+{
+    return ((size_t)node[2] * (size_t)reference->node_line[1] + (size_t)node[1]) *
+               (size_t)reference->node_line[0] +
+           (size_t)node[0];
+}
+
+static struct support find_support(const struct reference *reference, const double position[3])
+{
+    const struct talus_grid *grid = &reference->scene->grid;
+    struct support support = {.count = 1 << reference->scene->axis_count};
+    for (int corner = 0; corner < support.count; corner++) {
+        int node[3] = {0, 0, 0};
+        for (size_t axis = 0; axis < reference->scene->axis_count; axis++)
+            node[axis] = (int)floor((position[axis] - grid->min[axis]) / grid->cell[axis]) +
+                         (corner >> axis & 1);
+        support.node[corner] = &reference->nodes[node_index(reference, node)];
+        support.weight[corner] = hat(reference, node, position, support.gradient[corner]);
+    }
+    return support;
+}
+
+static int cell_index(const struct reference *reference, const double position[3])
+{
+    const struct talus_grid *grid = &reference->scene->grid;
+    int cell = 0;
+    for (size_t axis = reference->scene->axis_count; axis-- > 0;)
+        cell = cell * reference->node_line[axis] +
+               (int)floor((position[axis] - grid->min[axis]) / grid->cell[axis]);
+    return cell;
+}
+
+/* m_i, f_i = -sum V0 tau G, and P_i if wanted, of the present positions. */
+static void scatter(struct reference *reference)
+{
+    for (size_t i = 0; i < reference->node_count; i++) {
+        reference->nodes[i].mass = 0;
+        memset(reference->nodes[i].force, 0, sizeof reference->nodes[i].force);
+    }
+    for (size_t k = 0; k < reference->particle_count; k++) {
+        const struct reference_particle *p = &reference->particles[k];
+        const struct support support = find_support(reference, p->position);
+        for (int i = 0; i < support.count; i++) {
+            support.node[i]->mass += support.weight[i] * p->mass;
+            for (int row = 0; row < 3; row++) {
+                for (int axis = 0; axis < 3; axis++)
+                    support.node[i]->force[row] -= p->reference_volume *
+                                                   p->force_stress.m[row][axis] *
+                                                   support.gradient[i][axis];
+            }
+        }
+    }
+}
+
+static void scatter_momentum(struct reference *reference)
+{
+    for (size_t i = 0; i < reference->node_count; i++)
+        memset(reference->nodes[i].momentum, 0, sizeof reference->nodes[i].momentum);
+    for (size_t k = 0; k < reference->particle_count; k++) {
+        const struct reference_particle *p = &reference->particles[k];
+        const struct support support = find_support(reference, p->position);
+        for (int i = 0; i < support.count; i++) {
+            for (int axis = 0; axis < 3; axis++)
+                support.node[i]->momentum[axis] += support.weight[i] * p->mass * p->velocity[axis];
+        }
+    }
+}
+
+void reference_start(struct reference *reference, const struct talus_scene *scene,
+                     const struct talus_simulation *simulation)
+{
+    struct talus_simulation_state state;
+    struct talus_error error = {0};
+    talus_simulation_get_state(simulation, &state);
+    memset(reference, 0, sizeof *reference);
+    reference->scene = scene;
+    reference->time_step = scene->solver.time_step;
+    reference->particle_count = state.particle_count;
+    reference->node_count = 1;
+    for (size_t axis = 0; axis < 3; axis++) {
+        reference->node_line[axis] =
+            axis < scene->axis_count ? (int)scene->grid.cell_count[axis] + 1 : 1;
+        reference->node_count *= (size_t)reference->node_line[axis];
+    }
+    for (size_t k = 0; k < scene->boundary_count; k++)
+        reference->walls[reference->wall_count++] = reference_wall_read(scene, k);
+    reference->nodes = calloc(reference->node_count, sizeof *reference->nodes);
+    reference->particles = calloc(state.particle_count, sizeof *reference->particles);
+    double *values = calloc(8 * state.particle_count, sizeof *values);
+    if (values == NULL || reference->nodes == NULL || reference->particles == NULL)
+        abort();
+    double *velocity = values + 3 * state.particle_count, *mass = values + 6 * state.particle_count;
+    double *body = values + 7 * state.particle_count;
+    talus_simulation_read_positions(simulation, values);
+    if (talus_simulation_read_field(simulation, TALUS_FIELD_VELOCITY, velocity, &error) !=
+            TALUS_OK ||
+        talus_simulation_read_field(simulation, TALUS_FIELD_MASS, mass, &error) != TALUS_OK ||
+        talus_simulation_read_field(simulation, TALUS_FIELD_BODY, body, &error) != TALUS_OK)
+        abort();
+    double least = INFINITY;
+    for (size_t k = 0; k < state.particle_count; k++) {
+        struct reference_particle *p = &reference->particles[k];
+        memcpy(p->position, values + 3 * k, sizeof p->position);
+        memcpy(p->velocity, velocity + 3 * k, sizeof p->velocity);
+        p->mass = mass[k];
+        p->material = scene->bodies[(size_t)body[k]].material_index;
+        const struct talus_material *material = &scene->materials[p->material];
+        p->reference_volume = p->mass / material->values[MATERIAL_VALUE_DENSITY];
+        p->volume_ratio = 1;
+        p->cell = cell_index(reference, p->position);
+        if (scene->solver.strain == TALUS_STRAIN_FINITE &&
+            !material_table[material->model_index]->volumetric)
+            p->elastic = tensor_unit();
+        least = fmin(least, p->mass);
+    }
+    reference->mass_cutoff = 1e-11 * least;
+    free(values);
+    reference_update_stress(reference, 0);
+    scatter(reference);
+}
+
+void reference_release(struct reference *reference)
+{
+    free(reference->particles);
+    free(reference->nodes);
+    memset(reference, 0, sizeof *reference);
+}
+
+static double force_factor(const struct reference *reference)
+{
+    const double ramp = reference->scene->solver.force_ramp;
+    return ramp > 0 ? fmin(1.0, (reference->time + reference->time_step) / ramp) : 1.0;
+}
+
+/* dt (f_int / m + g) */
+static void free_increment(const struct reference *reference, const struct reference_node *node,
+                           double increment[3])
+{
+    for (int axis = 0; axis < 3; axis++)
+        increment[axis] =
+            reference->time_step * (node->force[axis] / node->mass +
+                                    force_factor(reference) * reference->scene->gravity[axis]);
+}
+
+static bool find_walls(const struct reference *reference, size_t index,
+                       bool active[REFERENCE_WALL_MAX])
+{
+    const int *line = reference->node_line;
+    const int flat = (int)index;
+    const int node[3] = {flat % line[0], flat / line[0] % line[1], flat / line[0] / line[1]};
+    bool any = false;
+    for (int k = 0; k < reference->wall_count; k++) {
+        active[k] = reference_wall_holds(&reference->walls[k], node);
+        any = any || active[k];
+    }
+    return any;
+}
+
+static void kick(struct reference *reference)
+{
+    for (size_t i = 0; i < reference->node_count; i++) {
+        struct reference_node *node = &reference->nodes[i];
+        bool active[REFERENCE_WALL_MAX];
+        memset(node->kick, 0, sizeof node->kick);
+        if (node->mass <= reference->mass_cutoff)
+            continue;
+        free_increment(reference, node, node->kick);
+        if (find_walls(reference, i, active))
+            reference_hold_back(reference->walls, reference->wall_count, active, node->mass,
+                                reference->time_step, node->kick);
+    }
+    for (size_t k = 0; k < reference->particle_count; k++) {
+        struct reference_particle *p = &reference->particles[k];
+        const struct support support = find_support(reference, p->position);
+        for (int i = 0; i < support.count; i++) {
+            for (int axis = 0; axis < 3; axis++)
+                p->velocity[axis] += support.weight[i] * support.node[i]->kick[axis];
+        }
+    }
+}
+
+/* Local damping: opposes the motion by a share of the out-of-balance force, never reverses it. */
+static double brake(const struct reference *reference, double velocity, double increment)
+{
+    const double share = reference->scene->solver.local_damping;
+    const double size = fmin(share * fabs(increment), fabs(velocity));
+    return velocity > 0 ? -size : size;
+}
+
+static void update_node(struct reference *reference, size_t index)
+{
+    struct reference_node *node = &reference->nodes[index];
+    const bool last = reference->scene->solver.stress_update == TALUS_STRESS_LAST;
+    struct reference_contact contact;
+    double start[3];
+    bool active[REFERENCE_WALL_MAX];
+    memset(node->velocity, 0, sizeof node->velocity);
+    memset(node->correction, 0, sizeof node->correction);
+    memset(&contact, 0, sizeof contact);
+    if (node->mass <= reference->mass_cutoff)
+        return;
+    free_increment(reference, node, contact.increment);
+    for (int axis = 0; axis < 3; axis++) {
+        start[axis] = node->momentum[axis] / node->mass;
+        const double moved = start[axis] + (last ? contact.increment[axis] : 0.0);
+        const double braked = brake(reference, moved, contact.increment[axis]);
+        node->velocity[axis] = moved + braked;
+        reference->damping_energy -= node->mass * braked * (moved + 0.5 * braked);
+        contact.free_velocity[axis] =
+            node->velocity[axis] + (last ? 0.0 : contact.increment[axis] - node->kick[axis]);
+        node->correction[axis] = node->velocity[axis] - start[axis];
+    }
+    if (!find_walls(reference, index, active))
+        return;
+    reference_contact_solve(reference->walls, reference->wall_count, active, node->mass,
+                            reference->time_step, &contact);
+    for (int axis = 0; axis < 3; axis++) {
+        node->velocity[axis] = contact.velocity[axis];
+        node->correction[axis] = contact.handed[axis] - start[axis];
+        for (int k = 0; k < reference->wall_count; k++) {
+            reference->wall_impulse[k][axis] -= contact.impulse[k][axis];
+            reference->wall_energy -= contact.impulse[k][axis] * contact.velocity[axis];
+        }
+    }
+}
+
+static void move_particles(struct reference *reference)
+{
+    const double rate = reference->scene->solver.pic_rate;
+    for (size_t k = 0; k < reference->particle_count; k++) {
+        struct reference_particle *p = &reference->particles[k];
+        const struct support support = find_support(reference, p->position);
+        memset(&p->gradient, 0, sizeof p->gradient);
+        memset(p->grid_velocity, 0, sizeof p->grid_velocity);
+        p->cell = cell_index(reference, p->position);
+        for (int i = 0; i < support.count; i++) {
+            const struct reference_node *node = support.node[i];
+            for (int row = 0; row < 3; row++) {
+                p->velocity[row] += support.weight[i] * node->correction[row];
+                p->grid_velocity[row] += support.weight[i] * node->velocity[row];
+                for (int axis = 0; axis < 3; axis++)
+                    p->gradient.m[row][axis] += node->velocity[row] * support.gradient[i][axis];
+            }
+        }
+        for (int axis = 0; axis < 3; axis++) {
+            p->velocity[axis] += (1.0 - exp(-rate * reference->time_step)) *
+                                 (p->grid_velocity[axis] - p->velocity[axis]);
+            p->position[axis] += reference->time_step * p->grid_velocity[axis];
+        }
+    }
+}
+
+void reference_step(struct reference *reference)
+{
+    memset(reference->wall_impulse, 0, sizeof reference->wall_impulse);
+    if (reference->scene->solver.stress_update == TALUS_STRESS_MODIFIED_LAST)
+        kick(reference);
+    scatter_momentum(reference);
+    for (size_t i = 0; i < reference->node_count; i++)
+        update_node(reference, i);
+    move_particles(reference);
+    reference_update_stress(reference, reference->time_step);
+    scatter(reference);
+    reference->time += reference->time_step;
+}
+
+struct reference_energy reference_energies(const struct reference *reference)
+{
+    struct reference_energy energy = {.dissipated =
+                                          reference->plastic_energy + reference->viscous_energy +
+                                          reference->damping_energy + reference->wall_energy};
+    for (size_t k = 0; k < reference->particle_count; k++) {
+        const struct reference_particle *p = &reference->particles[k];
+        const struct talus_material *material = &reference->scene->materials[p->material];
+        const struct material *model = material_table[material->model_index];
+        for (int axis = 0; axis < 3; axis++) {
+            energy.kinetic += 0.5 * p->mass * p->velocity[axis] * p->velocity[axis];
+            energy.potential -= p->mass * reference->scene->gravity[axis] * p->position[axis];
+        }
+        /* Anti-locking of the stress leaves the strain as the material returned it. */
+        energy.strain +=
+            p->reference_volume *
+            reference_material_energy(model, material->values, &p->history, p->update.strain);
+    }
+    return energy;
+}
+
+void reference_momentum(const struct reference *reference, double momentum[3])
+{
+    memset(momentum, 0, 3 * sizeof *momentum);
+    for (size_t k = 0; k < reference->particle_count; k++) {
+        for (int axis = 0; axis < 3; axis++)
+            momentum[axis] += reference->particles[k].mass * reference->particles[k].velocity[axis];
+    }
+}
