@@ -14,6 +14,7 @@ void material_issue_add(struct material_issues *issues, const char *key, const c
     (void)snprintf(issue->code, sizeof issue->code, "%s", code);
     va_list arguments;
     va_start(arguments, format);
+    /* NOLINTNEXTLINE(clang-analyzer-valist.Uninitialized): va_start is one line up */
     (void)vsnprintf(issue->text, sizeof issue->text, format, arguments);
     va_end(arguments);
 }

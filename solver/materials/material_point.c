@@ -95,6 +95,28 @@ static double control_offset(const struct point *point, const struct control *co
     return fmax(1e-6 * increment, fmax(1e-8 * elastic, 1e-12));
 }
 
+/* Takes as much of the change as does not make the error grow. */
+static bool control_search(struct point *point, struct control *control, double offset,
+                           const double change[SYM3_COMPONENTS], double *error)
+{
+    const struct control before = *control;
+    double factor = 1.0;
+    double last = *error;
+    bool valid = false;
+    for (int halving = 0; halving < HALVING_MAX; halving++) {
+        for (size_t index = 0; index < control->unknown_count; index++) {
+            int component = control->unknown[index];
+            control->increment[component] = before.increment[component] + factor * change[index];
+        }
+        valid = control_try(point, control, offset);
+        *error = control_error(point, control);
+        if (valid && *error <= last) /* equal: across a gap, where nothing is carried */
+            break;
+        factor *= 0.5;
+    }
+    return valid;
+}
+
 /* Finds the strain increment that gives the target stresses and leaves it in lane 0. */
 static bool control_solve(struct point *point, struct control *control, double stiffness)
 {
@@ -107,20 +129,7 @@ static bool control_solve(struct point *point, struct control *control, double s
         if (control->iterations == ITERATION_MAX)
             return false;
         control_newton(point, control, offset, change, stiffness);
-        const struct control before = *control;
-        double factor = 1.0;
-        double last = error;
-        for (int halving = 0; halving < HALVING_MAX; halving++, factor *= 0.5) {
-            for (size_t index = 0; index < control->unknown_count; index++) {
-                int component = control->unknown[index];
-                control->increment[component] =
-                    before.increment[component] + factor * change[index];
-            }
-            valid = control_try(point, control, offset);
-            error = control_error(point, control);
-            if (valid && error <= last) /* equal: across a gap, where nothing is carried */
-                break;
-        }
+        valid = control_search(point, control, offset, change, &error);
     }
     return valid;
 }
@@ -283,27 +292,27 @@ static enum talus_status run_gradient(struct run *run, const struct material_poi
     return TALUS_OK;
 }
 
-enum talus_status
-material_point_run(const struct material *material, const double *values, bool finite_strain,
-                   const double initial_stress[SYM3_COMPONENTS],
-                   const struct material_point_segment *path, size_t segment_count,
-                   void (*emit)(void *context, const struct material_point_step *step),
-                   void *context, struct talus_error *error)
+enum talus_status material_point_run(const struct material *material, const double *values,
+                                     const struct material_point_path *path,
+                                     void (*emit)(void *context,
+                                                  const struct material_point_step *step),
+                                     void *context, struct talus_error *error)
 {
     struct run run = {.emit = emit, .context = context};
     double shear = 0.0;
     enum talus_status status =
-        point_init(&run.point, material, values, finite_strain, initial_stress, error);
+        point_init(&run.point, material, values, path->finite_strain, path->initial_stress, error);
     if (status != TALUS_OK)
         return status;
     material_elastic_moduli(material, values, &run.bulk, &shear);
     run.stiffness = run.bulk + 4.0 / 3.0 * shear;
     run_emit(&run, 0);
-    for (size_t index = 0; status == TALUS_OK && index < segment_count; index++) {
-        if (path[index].gradient_given)
-            status = run_gradient(&run, &path[index], index, error);
+    for (size_t index = 0; status == TALUS_OK && index < path->segment_count; index++) {
+        const struct material_point_segment *segment = &path->segments[index];
+        if (segment->gradient_given)
+            status = run_gradient(&run, segment, index, error);
         else
-            status = run_controlled(&run, &path[index], index, error);
+            status = run_controlled(&run, segment, index, error);
     }
     point_release(&run.point);
     return status;

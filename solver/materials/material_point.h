@@ -32,15 +32,21 @@ struct material_point_step {        /* what one step gives to `emit` */
     int iterations;        /* of the mixed control; 0 where only strain is given */
 };
 
+struct material_point_path { /* borrows its segments */
+    bool finite_strain;
+    double initial_stress[SYM3_COMPONENTS]; /* [Pa] */
+    const struct material_point_segment *segments;
+    size_t segment_count;
+};
+
 /* Runs the path; emit() is called once for the initial state (step 0) and after each step; what it
  * is given lives until it returns. At finite strain a segment without `gradient` deforms without
  * spin: F <- exp(strain increment) F. `values` have passed the model's check.
  * TALUS_UNSTABLE if the stress control does not converge (pointer "/path/N"), TALUS_INVALID for a
  * gradient with det F <= 0 (pointer "/path/N/deformation_gradient"), TALUS_MEMORY. */
 TALUS_MUST_CHECK enum talus_status
-material_point_run(const struct material *material, const double *values, bool finite_strain,
-                   const double initial_stress[SYM3_COMPONENTS],
-                   const struct material_point_segment *path, size_t segment_count,
+material_point_run(const struct material *material, const double *values,
+                   const struct material_point_path *path,
                    void (*emit)(void *context, const struct material_point_step *step),
                    void *context, struct talus_error *error);
 

@@ -269,6 +269,15 @@ enum talus_status scene_point_read_file(const char *path, struct scene_point *po
     return TALUS_INVALID;
 }
 
+struct material_point_path scene_point_path(const struct scene_point *point)
+{
+    struct material_point_path path = {.finite_strain = point->strain == 1,
+                                       .segments = point->path,
+                                       .segment_count = point->segment_count};
+    memcpy(path.initial_stress, point->initial_stress, sizeof path.initial_stress);
+    return path;
+}
+
 void scene_point_release(struct scene_point *point)
 {
     free(point->material.name);

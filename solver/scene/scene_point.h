@@ -22,6 +22,9 @@ scene_point_read_file(const char *path, struct scene_point *point, struct scene_
 TALUS_MUST_CHECK enum talus_status scene_point_read(const json_t *root, struct scene_point *point,
                                                     struct scene_issues *issues);
 
+/* The path as the material point runs it; borrows from the point. */
+struct material_point_path scene_point_path(const struct scene_point *point);
+
 /* Accepts a zeroed point. */
 void scene_point_release(struct scene_point *point);
 

@@ -86,9 +86,9 @@ static enum talus_status job_point(const struct scene_point *point)
     const struct material *material = material_table[point->material.model_index];
     struct printer printer = {.material = material};
     struct talus_error error = {.status = TALUS_OK};
-    enum talus_status status = material_point_run(
-        material, point->material.values, point->strain == 1, point->initial_stress, point->path,
-        point->segment_count, print_step, &printer, &error);
+    const struct material_point_path path = scene_point_path(point);
+    enum talus_status status =
+        material_point_run(material, point->material.values, &path, print_step, &printer, &error);
     if (status != TALUS_OK) {
         struct scene_issue issue = {0};
         (void)snprintf(issue.pointer, sizeof issue.pointer, "%s", error.pointer);

@@ -98,9 +98,9 @@ static void check_model(const struct material *material)
     assert_ptr_equal(material_table[point.material.model_index], material);
     assert_int_equal(json_array_size(comparison.steps), step_count);
     find_scales(&comparison);
-    status =
-        material_point_run(material, point.material.values, point.strain == 1, point.initial_stress,
-                           point.path, point.segment_count, compare_step, &comparison, &error);
+    const struct material_point_path run = scene_point_path(&point);
+    status = material_point_run(material, point.material.values, &run, compare_step, &comparison,
+                                &error);
     if (status != TALUS_OK)
         fail_msg("%s: %s", path, error.text);
     scene_point_release(&point);

@@ -195,9 +195,11 @@ void record_run(struct record *record, const struct fixture *fixture, bool finit
     record->history = calloc(record->capacity, sizeof *record->history);
     assert_non_null(record->steps);
     assert_non_null(record->history);
+    struct material_point_path run = {
+        .finite_strain = finite_strain, .segments = path, .segment_count = segment_count};
+    memcpy(run.initial_stress, initial_stress, sizeof run.initial_stress);
     enum talus_status status =
-        material_point_run(fixture->material, fixture->values, finite_strain, initial_stress, path,
-                           segment_count, keep, record, &error);
+        material_point_run(fixture->material, fixture->values, &run, keep, record, &error);
     if (status != TALUS_OK)
         fail_msg("%s: %s %s", talus_status_name(status), error.pointer, error.text);
     assert_int_equal(record->count, record->capacity);

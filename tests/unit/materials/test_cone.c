@@ -36,7 +36,7 @@ static void test_apex_and_inverse(void **context)
 {
     (void)context;
     for (enum cone_fit fit = CONE_FIT_OUTER; fit <= CONE_FIT_PLANE_STRAIN_ASSOCIATED; fit++) {
-        for (double degrees = 1.0; degrees < 85.0; degrees += 3.0) {
+        for (int degrees = 1; degrees < 85; degrees += 3) {
             double angle = degrees * radians;
             double slope = cone_slope(fit, angle);
             double apex = cone_strength(fit, angle, 7.0) / slope;

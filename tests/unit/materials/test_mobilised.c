@@ -71,9 +71,9 @@ static void test_friction_law(void **context)
     assert_near(find_angles(&fixture, 0.020, 0.0).friction, 22.7, 0.05);
     fixture_release(&fixture);
     init_law(&fixture, sets[2], 1.0);
-    for (double strain = 0.0; strain < 0.2; strain += 0.01)
-        assert_true(find_angles(&fixture, strain + 0.01, 0.0).friction >
-                    find_angles(&fixture, strain, 0.0).friction);
+    for (int percent = 0; percent < 20; percent++)
+        assert_true(find_angles(&fixture, 0.01 * (percent + 1), 0.0).friction >
+                    find_angles(&fixture, 0.01 * percent, 0.0).friction);
     fixture_release(&fixture);
 }
 
@@ -86,7 +86,7 @@ static void test_strain_scale(void **context)
     struct fixture percent;
     init_law(&plain, set, 1.0);
     init_law(&percent, set, 100.0);
-    for (double lambda = 0.0; lambda < 8.0; lambda += 0.5) {
+    for (int lambda = 0; lambda < 8; lambda++) {
         struct angles a = find_angles(&plain, lambda, 0.0);
         struct angles b = find_angles(&percent, lambda / 100.0, 0.0);
         assert_near(a.friction, b.friction, 1e-11);
@@ -288,7 +288,7 @@ static void test_matsuoka_nakai_sector(void **context)
 static void test_matsuoka_nakai_corners(void **context)
 {
     (void)context;
-    for (double friction = 1.0; friction < 85.0; friction += 4.0) {
+    for (int friction = 1; friction < 85; friction += 4) {
         double ratio = (1.0 + sin(friction / degrees)) / (1.0 - sin(friction / degrees));
         struct fixture fixture;
         struct slots slots;
