@@ -181,7 +181,9 @@ static void update_block(struct run *run, size_t block, double factor)
         }
         correction = lanes_keep(moves, correction);
         lanes_store(node_values(nodes, block, nodes->layout.correction + axis), correction);
-        lanes_store(momentum, lanes_keep(moves, start) + correction);
+        lanes_store(momentum, lanes_splat(0.0)); /* may be the place of the velocity */
+        lanes_store(node_values(nodes, block, nodes->layout.velocity + axis),
+                    lanes_keep(moves, start) + correction);
     }
 }
 
@@ -226,7 +228,7 @@ static void update_wall_node(struct run *run, struct wall_node *wall, double fac
     free_increment(run, wall, contact.mass, factor, contact.acceleration_increment);
     for (uint32_t axis = 0; axis < run->grid.domain.axis_count; axis++) {
         const double moved =
-            node_values(nodes, wall->block, nodes->layout.momentum + axis)[wall->lane];
+            node_values(nodes, wall->block, nodes->layout.velocity + axis)[wall->lane];
         const double kick =
             last ? 0.0 : node_values(nodes, wall->block, nodes->layout.kick + axis)[wall->lane];
         const double correction =
@@ -240,7 +242,7 @@ static void update_wall_node(struct run *run, struct wall_node *wall, double fac
     double square = 0;
     for (uint32_t axis = 0; axis < run->grid.domain.axis_count; axis++) {
         const double velocity = contact.velocity[axis];
-        node_values(nodes, wall->block, nodes->layout.momentum + axis)[wall->lane] = velocity;
+        node_values(nodes, wall->block, nodes->layout.velocity + axis)[wall->lane] = velocity;
         node_values(nodes, wall->block, nodes->layout.correction + axis)[wall->lane] =
             contact.handed_velocity[axis] - kept[axis];
         wall->impulse[axis] =
@@ -370,7 +372,7 @@ static void book_body_forces(struct run *run, double factor)
                 const double whole = run->time_step * (force + factor * run->scene.gravity[axis]);
                 const double correction =
                     node_values(nodes, block, nodes->layout.correction + axis)[lane];
-                const double moved = node_values(nodes, block, nodes->layout.momentum + axis)[lane];
+                const double moved = node_values(nodes, block, nodes->layout.velocity + axis)[lane];
                 const double braked = correction - (last ? whole : 0.0);
                 impulse[axis] += mass[lane] * braked;
                 energy -= mass[lane] * braked * (moved - 0.5 * braked);

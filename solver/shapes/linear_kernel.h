@@ -180,7 +180,7 @@ static void LOCAL(gather)(const struct shape_context *context, struct particle_b
     for (uint32_t axis = 0; axis < DIMENSION; axis++) {
         lanes c[BASIS];
         LOCAL(load_coefficients)
-        (context->nodes, block, context->nodes->layout.momentum + axis, c);
+        (context->nodes, block, context->nodes->layout.velocity + axis, c);
         for (size_t slot = 0; slot < slot_count; slot += LANE_COUNT) {
             lanes x[DIMENSION], phi[BASIS];
             LOCAL(load_position)(position, slot, x);

@@ -25,7 +25,7 @@ struct shape_context {
 struct shape_kernels {
     /* First pass of `modified_last`: v_p += sum N kick_i, then momentum_i += sum N m v_p. */
     void (*kick)(const struct shape_context *context, struct particle_block *block);
-    /* velocity and gradient of the grid velocity (node momentum array) into scratch; with `correct`
+    /* velocity and gradient of the grid velocity into scratch; with `correct`
      * v_p += sum N correction_i. */
     void (*gather)(const struct shape_context *context, struct particle_block *block, bool correct,
                    struct block_scratch *scratch);

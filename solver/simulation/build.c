@@ -205,7 +205,8 @@ enum talus_status run_build(struct run *run, const struct talus_scene *scene, in
     build_domain(scene, &run->grid.domain);
     run_layout(&run->scene, &run->grid.layout);
     run->stored_components = run->grid.layout.component_count[PARTICLE_STRAIN];
-    node_layout_init(&run->grid.nodes.layout, scene->axis_count);
+    node_layout_init(&run->grid.nodes.layout, scene->axis_count,
+                     scene->solver.stress_update == TALUS_STRESS_LAST);
     run->shape = shape_table[scene->solver.shape_index];
     run->kernels = run->shape->kernels[scene->axis_count - 1];
     enum talus_status status = build_materials(run, error);

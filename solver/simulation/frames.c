@@ -247,7 +247,7 @@ static void write_node(const struct run *run, size_t block, size_t lane,
                 used ? domain_node_position(&run->grid.domain, axis, node) : 0.0;
         if (out->velocity != NULL)
             out->velocity[3 * n + axis] =
-                used ? node_values(nodes, block, nodes->layout.momentum + axis)[lane] : 0.0;
+                used ? node_values(nodes, block, nodes->layout.velocity + axis)[lane] : 0.0;
         if (out->reaction != NULL)
             out->reaction[3 * n + axis] = wall != NULL && run->last_time_step > 0
                                               ? -wall->impulse[axis] / run->last_time_step

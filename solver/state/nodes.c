@@ -4,7 +4,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-void node_layout_init(struct node_layout *layout, size_t axis_count)
+void node_layout_init(struct node_layout *layout, size_t axis_count,
+                      bool momentum_outlives_velocity)
 {
     const uint32_t axes = (uint32_t)axis_count;
     layout->mass = 0;
@@ -12,6 +13,7 @@ void node_layout_init(struct node_layout *layout, size_t axis_count)
     layout->momentum = 1 + axes;
     layout->kick = 1 + 2 * axes;
     layout->correction = 1 + 3 * axes;
+    layout->velocity = momentum_outlives_velocity ? layout->kick : layout->momentum;
     layout->component_count = 1 + 4 * axes;
 }
 

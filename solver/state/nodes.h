@@ -8,6 +8,7 @@
 #include "state/block_map.h"
 #include "state/lanes.h"
 
+#include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
 
@@ -15,7 +16,9 @@
 struct node_layout {
     uint32_t mass;       /* [kg] of the present particle positions */
     uint32_t force;      /* [N] internal force of the present particle positions */
-    uint32_t momentum;   /* [kg m/s] scattered; the node update turns it into velocity [m/s] */
+    uint32_t momentum;   /* [kg m/s] scattered */
+    uint32_t velocity;   /* [m/s] that strains and moves the material; shares its place with what is
+                            free by then, see node_layout_init */
     uint32_t kick;       /* [m/s] velocity increment that the particles get in the first pass */
     uint32_t correction; /* [m/s] velocity increment that they get in the second pass */
     uint32_t component_count;
@@ -29,7 +32,11 @@ struct node_blocks {
     struct block_map map;
 };
 
-void node_layout_init(struct node_layout *layout, size_t axis_count);
+/* With `momentum_outlives_velocity` the second pass scatters momentum while it reads velocity, and
+ * no kick is needed: velocity takes the place of the kick. Otherwise the node update turns momentum
+ * into velocity in place. */
+void node_layout_init(struct node_layout *layout, size_t axis_count,
+                      bool momentum_outlives_velocity);
 void node_blocks_release(struct node_blocks *nodes);
 /* Index of the node block at a place, made (zeroed) if missing; BLOCK_NONE when memory ran out. */
 uint32_t node_blocks_require(struct node_blocks *nodes, int32_t x, int32_t y, int32_t z);
