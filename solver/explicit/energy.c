@@ -61,7 +61,7 @@ double run_numerical_loss(const struct run *run)
     const struct run_energy *energy = &run->energy;
     return run->audit.initial_energy - (energy->kinetic + energy->strain + energy->potential) -
            (energy->plastic + energy->viscous + energy->damping + energy->wall) -
-           energy->eliminated;
+           energy->eliminated + energy->external;
 }
 
 double run_energy_turnover(const struct run *run)
@@ -69,7 +69,7 @@ double run_energy_turnover(const struct run *run)
     const struct run_energy *energy = &run->energy;
     return run->audit.initial_stored + energy->kinetic + energy->strain + energy->plastic +
            energy->viscous + energy->damping + energy->wall + fabs(energy->eliminated) +
-           fabs(run->audit.initial_potential - energy->potential);
+           fabs(energy->external) + fabs(run->audit.initial_potential - energy->potential);
 }
 
 void run_measure_momentum(const struct run *run, double momentum[3], double *mass)

@@ -11,8 +11,9 @@
 
 enum { WALL_CHUNK = 128 };
 /* Per chunk and face: impulse 3, moment 3, area; after the faces of a chunk: impulse of the walls
- * on the material 3, its magnitude, work of friction. */
-enum { FACE_SUMS = 7, CHUNK_SUMS = 5 };
+ * on the material 3, its magnitude, work of friction; what the walls change of local damping:
+ * energy, impulse 3. */
+enum { FACE_SUMS = 7, CHUNK_SUMS = 9 };
 
 static size_t partial_stride(const struct run *run)
 {
@@ -210,12 +211,65 @@ static void add_face_sums(const struct run *run, const struct wall_node *wall,
     }
 }
 
+/* A wall node on its way through the node update. */
+struct wall_passage {
+    double start[3];  /* [m/s] before the forces of the step */
+    double kept[3];   /* [m/s] what the particles carry already */
+    double braked[3]; /* [m/s] local damping as applied to a free node; then as it is with walls */
+};
+
+/* Velocities and increments before the walls. Local damping is taken back: it is a share of what
+ * the walls leave unbalanced, or it would carry load in the place of friction. */
+static void enter_wall(struct run *run, const struct wall_node *wall, double factor,
+                       struct contact *contact, struct wall_passage *passage, double *damping_sums)
+{
+    const struct node_blocks *nodes = &run->grid.nodes;
+    const bool last = run->scene.solver.stress_update == TALUS_STRESS_LAST;
+    free_increment(run, wall, contact->mass, factor, contact->acceleration_increment);
+    for (uint32_t axis = 0; axis < run->grid.domain.axis_count; axis++) {
+        const double whole = contact->acceleration_increment[axis];
+        const double moved =
+            node_values(nodes, wall->block, nodes->layout.velocity + axis)[wall->lane];
+        const double kick =
+            last ? 0.0 : node_values(nodes, wall->block, nodes->layout.kick + axis)[wall->lane];
+        const double correction =
+            node_values(nodes, wall->block, nodes->layout.correction + axis)[wall->lane];
+        const double braked = correction - (last ? whole : 0.0);
+        passage->kept[axis] = moved - correction;
+        passage->start[axis] = passage->kept[axis] - kick;
+        contact->free_velocity[axis] = moved - braked + (last ? 0.0 : whole - kick);
+        damping_sums[0] += contact->mass * braked * (moved - 0.5 * (braked + whole));
+        damping_sums[1 + axis] -= contact->mass * braked;
+    }
+}
+
+/* Local damping along the motion that the walls leave; never reverses it. */
+static void brake_at_wall(struct contact *contact, const struct wall_passage *passage,
+                          double damping, double *damping_sums)
+{
+    double square = 0, gain = 0;
+    for (size_t axis = 0; axis < 3; axis++) {
+        square += contact->velocity[axis] * contact->velocity[axis];
+        gain += (contact->velocity[axis] - passage->start[axis]) * contact->velocity[axis];
+    }
+    if (square == 0)
+        return;
+    const double share = fmin(1.0, damping * fabs(gain) / square);
+    for (size_t axis = 0; axis < 3; axis++) {
+        const double braked = -share * contact->velocity[axis];
+        contact->velocity[axis] += braked;
+        contact->handed_velocity[axis] += braked;
+        damping_sums[0] -=
+            contact->mass * braked * 0.5 * (contact->velocity[axis] + passage->start[axis]);
+        damping_sums[1 + axis] += contact->mass * braked;
+    }
+}
+
 /* Applies the walls at one node and books what they did. */
 static void update_wall_node(struct run *run, struct wall_node *wall, double factor,
                              double *partial)
 {
     const struct node_blocks *nodes = &run->grid.nodes;
-    const bool last = run->scene.solver.stress_update == TALUS_STRESS_LAST;
     memset(wall->impulse, 0, sizeof wall->impulse);
     struct contact contact = {.faces = run->walls.faces,
                               .node = &wall->faces,
@@ -224,33 +278,26 @@ static void update_wall_node(struct run *run, struct wall_node *wall, double fac
                               .time_step = run->time_step};
     if (contact.mass <= run->mass_cutoff)
         return;
-    double kept[3] = {0, 0, 0};
-    free_increment(run, wall, contact.mass, factor, contact.acceleration_increment);
-    for (uint32_t axis = 0; axis < run->grid.domain.axis_count; axis++) {
-        const double moved =
-            node_values(nodes, wall->block, nodes->layout.velocity + axis)[wall->lane];
-        const double kick =
-            last ? 0.0 : node_values(nodes, wall->block, nodes->layout.kick + axis)[wall->lane];
-        const double correction =
-            node_values(nodes, wall->block, nodes->layout.correction + axis)[wall->lane];
-        const double held = last ? 0.0 : contact.acceleration_increment[axis] - kick;
-        kept[axis] = moved - correction; /* what the particles carry already */
-        contact.free_velocity[axis] = moved + held;
-    }
-    contact_solve(&contact);
     double *totals = partial + run->walls.face_count * FACE_SUMS;
+    struct wall_passage passage = {.start = {0, 0, 0}};
+    enter_wall(run, wall, factor, &contact, &passage, totals + 5);
+    contact_solve(&contact);
     double square = 0;
     for (uint32_t axis = 0; axis < run->grid.domain.axis_count; axis++) {
-        const double velocity = contact.velocity[axis];
-        node_values(nodes, wall->block, nodes->layout.velocity + axis)[wall->lane] = velocity;
-        node_values(nodes, wall->block, nodes->layout.correction + axis)[wall->lane] =
-            contact.handed_velocity[axis] - kept[axis];
         wall->impulse[axis] =
             contact.mass * (contact.handed_velocity[axis] - contact.free_velocity[axis]);
         totals[axis] += wall->impulse[axis];
         square += wall->impulse[axis] * wall->impulse[axis];
+    }
+    if (run->scene.solver.local_damping > 0)
+        brake_at_wall(&contact, &passage, run->scene.solver.local_damping, totals + 5);
+    for (uint32_t axis = 0; axis < run->grid.domain.axis_count; axis++) {
+        node_values(nodes, wall->block, nodes->layout.velocity + axis)[wall->lane] =
+            contact.velocity[axis];
+        node_values(nodes, wall->block, nodes->layout.correction + axis)[wall->lane] =
+            contact.handed_velocity[axis] - passage.kept[axis];
         /* Along the normal the boundary does no work; along it this is the work of friction. */
-        totals[4] -= wall->impulse[axis] * velocity;
+        totals[4] -= wall->impulse[axis] * contact.velocity[axis];
     }
     totals[3] += sqrt(square);
     add_face_sums(run, wall, &contact, partial);
@@ -338,9 +385,10 @@ static void sum_walls(struct run *run, size_t chunk_count)
         }
         const double *totals = partial + run->walls.face_count * FACE_SUMS;
         for (size_t axis = 0; axis < 3; axis++)
-            run->audit.impulse[axis] += totals[axis];
+            run->audit.impulse[axis] += totals[axis] + totals[6 + axis];
         run->audit.exchanged += totals[3];
         run->energy.wall += totals[4];
+        run->energy.damping += totals[5];
     }
     for (size_t face = 0; face < run->walls.face_count; face++) {
         const size_t boundary = run->walls.faces[face].boundary_index;
@@ -375,7 +423,7 @@ static void book_body_forces(struct run *run, double factor)
                 const double moved = node_values(nodes, block, nodes->layout.velocity + axis)[lane];
                 const double braked = correction - (last ? whole : 0.0);
                 impulse[axis] += mass[lane] * braked;
-                energy -= mass[lane] * braked * (moved - 0.5 * braked);
+                energy -= mass[lane] * braked * (moved - 0.5 * (braked + whole));
             }
         }
     }
@@ -387,6 +435,23 @@ static void book_body_forces(struct run *run, double factor)
     }
     run->audit.exchanged += sqrt(square);
     run->energy.damping += energy;
+}
+
+/* The share of gravity that the ramp holds back is in the potential, and must not be: its work is
+ * external. */
+static void book_ramp(struct run *run, double factor)
+{
+    const struct node_blocks *nodes = &run->grid.nodes;
+    double power = 0;
+    for (size_t block = 0; block < nodes->count; block++) {
+        const double *mass = node_values(nodes, block, nodes->layout.mass);
+        for (uint32_t axis = 0; axis < run->grid.domain.axis_count; axis++) {
+            const double *velocity = node_values(nodes, block, nodes->layout.velocity + axis);
+            for (size_t lane = 0; lane < LANE_COUNT; lane++)
+                power += mass[lane] * run->scene.gravity[axis] * velocity[lane];
+        }
+    }
+    run->energy.external -= (1 - factor) * power * run->time_step;
 }
 
 static void clear_scattered(struct run *run, size_t block)
@@ -417,6 +482,8 @@ void run_update_nodes(struct run *run)
             update_wall_node(run, &run->wall_nodes[index], factor, partial);
     }
     sum_walls(run, chunk_count);
+    if (factor < 1)
+        book_ramp(run, factor);
 #pragma omp parallel for schedule(static) num_threads(run->threads) if (run->threads > 1)
     for (size_t block = 0; block < nodes->count; block++)
         clear_scattered(run, block);

@@ -76,6 +76,7 @@ struct tile_sums {
 struct run_energy {
     double kinetic, strain, potential;                  /* [J] now */
     double plastic, viscous, damping, wall, eliminated; /* [J] accumulated */
+    double external; /* [J] accumulated work of forces that the potential does not know */
 };
 
 struct run_audit {

@@ -103,7 +103,7 @@ double run_energy_part(const struct run *run, enum talus_energy_part part)
     case TALUS_ENERGY_DISSIPATED:
         return energy->plastic + energy->viscous + energy->damping + energy->wall;
     case TALUS_ENERGY_EXTERNAL:
-        return -energy->eliminated;
+        return energy->external - energy->eliminated;
     case TALUS_ENERGY_NUMERICAL:
         return run_numerical_loss(run);
     case TALUS_ENERGY_PART_COUNT:
