@@ -2,7 +2,7 @@
 /* Energies, momentum, reactions and positions of the solver against the textbook code over 1,000
  * steps, for every material, in scenes without free flight. */
 #include "reference_mpm.h"
-#include "scene_fixture.h"
+#include "simulation_fixture.h"
 
 #include <stdio.h>
 
@@ -57,50 +57,50 @@ static const struct variant variants[] = {
 };
 
 /* Side walls and a floor that hold a column which settles under sudden gravity. */
-static void build_column(struct scene_fixture *fixture, size_t material, size_t axes)
+static void build_column(struct simulation_fixture *fixture, size_t material, size_t axes)
 {
     static const double min[3] = {0.1, 0.1, 0.1}, max[3][3] = {{0.9}, {0.4, 0.7}, {0.3, 0.3, 0.5}};
     struct talus_scene *scene = &fixture->scene;
     const size_t up = axes - 1;
     scene->gravity[up] = -40; /* strong, for strains well above round-off */
-    scene_fixture_add_box(fixture, material, min, max[axes - 1], axes == 1 ? 3 : 2);
-    scene_fixture_add_plane(fixture, "floor", up, 0.1, 1, "stick", 0);
+    simulation_fixture_add_box(fixture, material, min, max[axes - 1], axes == 1 ? 3 : 2);
+    simulation_fixture_add_plane(fixture, "floor", up, 0.1, 1, "stick", 0);
     static const char *const low[2] = {"x low", "y low"}, *const high[2] = {"x high", "y high"};
     for (size_t axis = 0; axis < up; axis++) {
-        scene_fixture_add_plane(fixture, low[axis], axis, 0.1, 1, "slip", 0);
-        scene_fixture_add_plane(fixture, high[axis], axis, max[axes - 1][axis], -1, "slip", 0);
+        simulation_fixture_add_plane(fixture, low[axis], axis, 0.1, 1, "slip", 0);
+        simulation_fixture_add_plane(fixture, high[axis], axis, max[axes - 1][axis], -1, "slip", 0);
     }
 }
 
 /* A block that settles on a floor with friction while it slides along it over several cells. */
-static void build_slide(struct scene_fixture *fixture, size_t material, size_t axes)
+static void build_slide(struct simulation_fixture *fixture, size_t material, size_t axes)
 {
     static const double min[3] = {0.2, 0.1, 0.2}, max[3] = {0.5, 0.3, 0.4};
     const size_t up = 1;
     fixture->scene.gravity[up] = -9.81;
-    struct talus_body *body = scene_fixture_add_box(fixture, material, min, max, 2);
+    struct talus_body *body = simulation_fixture_add_box(fixture, material, min, max, 2);
     body->velocity[0] = 1.0;
     if (axes == 3)
         body->velocity[2] = 0.5;
-    scene_fixture_add_plane(fixture, "floor", up, 0.1, 1, "friction", 0.15);
+    simulation_fixture_add_plane(fixture, "floor", up, 0.1, 1, "friction", 0.15);
 }
 
 /* A bar that runs into a wall and stays there: released tension would let it fly. */
-static void build_bar(struct scene_fixture *fixture, size_t material, size_t axes)
+static void build_bar(struct simulation_fixture *fixture, size_t material, size_t axes)
 {
     static const double min[3] = {0.1, 0.1, 0.1}, max[3] = {0.9, 0.2, 0.2};
-    struct talus_body *body = scene_fixture_add_box(fixture, material, min, max, 2);
+    struct talus_body *body = simulation_fixture_add_box(fixture, material, min, max, 2);
     body->velocity[0] = -0.2;
-    scene_fixture_add_plane(fixture, "wall", 0, 0.1, 1, axes == 1 ? "slip" : "stick", 0);
+    simulation_fixture_add_plane(fixture, "wall", 0, 0.1, 1, axes == 1 ? "slip" : "stick", 0);
 }
 
-static void build(struct scene_fixture *fixture, const struct material *material,
+static void build(struct simulation_fixture *fixture, const struct material *material,
                   const struct variant *variant)
 {
     static const int64_t count[3] = {16, 10, 12};
-    scene_fixture_init(fixture, variant->axis_count, 0.1, count);
+    simulation_fixture_init(fixture, variant->axis_count, 0.1, count);
     struct talus_scene *scene = &fixture->scene;
-    const size_t index = scene_fixture_add_sample(fixture, material);
+    const size_t index = simulation_fixture_add_sample(fixture, material);
     const bool last = variant->stress_update == TALUS_STRESS_LAST;
     scene->solver.time_step = last ? 2e-4 : 4e-4;
     scene->duration = 10;
@@ -211,9 +211,9 @@ static void compare_positions(struct comparison *comparison, const struct refere
     free(position);
 }
 
-static struct comparison compare(const struct scene_fixture *fixture)
+static struct comparison compare(const struct simulation_fixture *fixture)
 {
-    struct talus_simulation *simulation = scene_fixture_start(fixture, 1);
+    struct talus_simulation *simulation = simulation_fixture_start(fixture, 1);
     struct reference reference;
     reference_start(&reference, &fixture->scene, simulation);
     struct comparison comparison = {0};
@@ -247,7 +247,7 @@ static void run_material(const struct material *material)
 {
     assert_true(reference_material_known(material));
     for (size_t index = 0; index < LENGTH(variants); index++) {
-        struct scene_fixture fixture;
+        struct simulation_fixture fixture;
         build(&fixture, material, &variants[index]);
         fixture.scene.output.frame_fields = 1u << TALUS_FIELD_PLASTIC_STRAIN;
         const struct comparison c = compare(&fixture);

@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-#include "scene_fixture.h"
+#include "simulation_fixture.h"
 
 #include "boundaries/boundary.h"
 
 #include <stdio.h>
 
-void scene_fixture_init(struct scene_fixture *fixture, size_t axis_count, double cell,
-                        const int64_t count[3])
+void simulation_fixture_init(struct simulation_fixture *fixture, size_t axis_count, double cell,
+                             const int64_t count[3])
 {
     static const enum talus_dimension dimensions[3] = {TALUS_LINE, TALUS_PLANE_STRAIN, TALUS_SOLID};
     memset(fixture, 0, sizeof *fixture);
@@ -26,10 +26,10 @@ void scene_fixture_init(struct scene_fixture *fixture, size_t axis_count, double
     scene->probes = fixture->probes;
 }
 
-static size_t add_material(struct scene_fixture *fixture, const struct material *material)
+static size_t add_material(struct simulation_fixture *fixture, const struct material *material)
 {
     const size_t index = fixture->scene.material_count++;
-    assert_true(index < SCENE_FIXTURE_MATERIALS);
+    assert_true(index < SIMULATION_FIXTURE_MATERIALS);
     size_t model = 0;
     while (material_table[model] != material)
         model++;
@@ -38,8 +38,8 @@ static size_t add_material(struct scene_fixture *fixture, const struct material 
     return index;
 }
 
-size_t scene_fixture_add_material(struct scene_fixture *fixture, const char *model,
-                                  const struct setting *settings, size_t count)
+size_t simulation_fixture_add_material(struct simulation_fixture *fixture, const char *model,
+                                       const struct setting *settings, size_t count)
 {
     const struct material *material = material_find(model);
     assert_non_null(material);
@@ -48,7 +48,8 @@ size_t scene_fixture_add_material(struct scene_fixture *fixture, const char *mod
     return index;
 }
 
-size_t scene_fixture_add_sample(struct scene_fixture *fixture, const struct material *material)
+size_t simulation_fixture_add_sample(struct simulation_fixture *fixture,
+                                     const struct material *material)
 {
     struct fixture sample;
     const size_t index = add_material(fixture, material);
@@ -58,12 +59,14 @@ size_t scene_fixture_add_sample(struct scene_fixture *fixture, const struct mate
     return index;
 }
 
-struct talus_body *scene_fixture_add_box(struct scene_fixture *fixture, size_t material,
-                                         const double min[3], const double max[3], double per_cell)
+struct talus_body *simulation_fixture_add_box(struct simulation_fixture *fixture, size_t material,
+                                              const double min[3], const double max[3],
+                                              double per_cell)
 {
-    static const char *const names[SCENE_FIXTURE_BODIES] = {"body", "second", "third", "fourth"};
+    static const char *const names[SIMULATION_FIXTURE_BODIES] = {"body", "second", "third",
+                                                                 "fourth"};
     const size_t index = fixture->scene.body_count++;
-    assert_true(index < SCENE_FIXTURE_BODIES);
+    assert_true(index < SIMULATION_FIXTURE_BODIES);
     struct talus_body *body = &fixture->bodies[index];
     body->name = (char *)names[index];
     body->material_index = material;
@@ -90,12 +93,12 @@ static size_t condition_index(const char *name)
     return index;
 }
 
-static struct talus_boundary *add_boundary(struct scene_fixture *fixture, const char *name,
+static struct talus_boundary *add_boundary(struct simulation_fixture *fixture, const char *name,
                                            size_t face_count, const char *condition,
                                            double friction)
 {
     const size_t index = fixture->scene.boundary_count++;
-    assert_true(index < SCENE_FIXTURE_BOUNDARIES);
+    assert_true(index < SIMULATION_FIXTURE_BOUNDARIES);
     struct talus_boundary *boundary = &fixture->boundaries[index];
     boundary->name = (char *)name;
     boundary->face_count = face_count;
@@ -107,9 +110,10 @@ static struct talus_boundary *add_boundary(struct scene_fixture *fixture, const 
     return boundary;
 }
 
-struct talus_boundary *scene_fixture_add_plane(struct scene_fixture *fixture, const char *name,
-                                               size_t axis, double coordinate, double direction,
-                                               const char *condition, double friction)
+struct talus_boundary *simulation_fixture_add_plane(struct simulation_fixture *fixture,
+                                                    const char *name, size_t axis,
+                                                    double coordinate, double direction,
+                                                    const char *condition, double friction)
 {
     struct talus_boundary *boundary = add_boundary(fixture, name, 1, condition, friction);
     boundary->shape = TALUS_BOUNDARY_PLANE;
@@ -119,9 +123,10 @@ struct talus_boundary *scene_fixture_add_plane(struct scene_fixture *fixture, co
     return boundary;
 }
 
-struct talus_boundary *scene_fixture_add_obstacle(struct scene_fixture *fixture, const char *name,
-                                                  const double min[3], const double max[3],
-                                                  const char *condition, double friction)
+struct talus_boundary *simulation_fixture_add_obstacle(struct simulation_fixture *fixture,
+                                                       const char *name, const double min[3],
+                                                       const double max[3], const char *condition,
+                                                       double friction)
 {
     struct talus_boundary *boundary =
         add_boundary(fixture, name, 2 * fixture->scene.axis_count, condition, friction);
@@ -133,11 +138,11 @@ struct talus_boundary *scene_fixture_add_obstacle(struct scene_fixture *fixture,
     return boundary;
 }
 
-struct talus_probe *scene_fixture_add_probe(struct scene_fixture *fixture, const char *name,
-                                            enum talus_probe_kind kind)
+struct talus_probe *simulation_fixture_add_probe(struct simulation_fixture *fixture,
+                                                 const char *name, enum talus_probe_kind kind)
 {
     const size_t index = fixture->scene.probe_count++;
-    assert_true(index < SCENE_FIXTURE_PROBES);
+    assert_true(index < SIMULATION_FIXTURE_PROBES);
     struct talus_probe *probe = &fixture->probes[index];
     probe->name = (char *)name;
     probe->kind = kind;
@@ -150,7 +155,8 @@ struct talus_probe *scene_fixture_add_probe(struct scene_fixture *fixture, const
     return probe;
 }
 
-struct talus_simulation *scene_fixture_start(const struct scene_fixture *fixture, int threads)
+struct talus_simulation *simulation_fixture_start(const struct simulation_fixture *fixture,
+                                                  int threads)
 {
     struct talus_simulation *simulation = NULL;
     struct talus_error error = {0};
