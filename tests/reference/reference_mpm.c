@@ -213,40 +213,57 @@ static void kick(struct reference *reference)
 }
 
 /* Local damping: opposes the motion by a share of the out-of-balance force, never reverses it. */
-static double brake(const struct reference *reference, double velocity, double increment)
+static void brake(struct reference *reference, struct reference_node *node,
+                  const double increment[3])
 {
     const double share = reference->scene->solver.local_damping;
-    const double size = fmin(share * fabs(increment), fabs(velocity));
-    return velocity > 0 ? -size : size;
+    for (int axis = 0; axis < 3; axis++) {
+        const double moved = node->velocity[axis];
+        const double size = fmin(share * fabs(increment[axis]), fabs(moved));
+        const double braked = moved > 0 ? -size : size;
+        node->velocity[axis] += braked;
+        reference->damping_energy -=
+            node->mass * braked * (moved + 0.5 * (braked - increment[axis]));
+    }
 }
 
-static void update_node(struct reference *reference, size_t index)
+/* The same at walls: a share of what the walls leave unbalanced, along the motion. */
+static void brake_at_wall(struct reference *reference, double mass, const double before[3],
+                          struct reference_contact *contact)
 {
-    struct reference_node *node = &reference->nodes[index];
+    const double share = reference->scene->solver.local_damping;
+    double speed = 0, gain = 0;
+    for (int axis = 0; axis < 3; axis++)
+        speed += contact->velocity[axis] * contact->velocity[axis];
+    speed = sqrt(speed);
+    if (speed == 0)
+        return;
+    for (int axis = 0; axis < 3; axis++)
+        gain += (contact->velocity[axis] - before[axis]) * contact->velocity[axis] / speed;
+    for (int axis = 0; axis < 3; axis++) {
+        const double braked = -fmin(share * fabs(gain), speed) * contact->velocity[axis] / speed;
+        contact->velocity[axis] += braked;
+        contact->handed[axis] += braked;
+        reference->damping_energy -= mass * braked * 0.5 * (contact->velocity[axis] + before[axis]);
+    }
+}
+
+static void update_wall_node(struct reference *reference, struct reference_node *node,
+                             const bool active[REFERENCE_WALL_MAX], const double increment[3])
+{
     const bool last = reference->scene->solver.stress_update == TALUS_STRESS_LAST;
     struct reference_contact contact;
-    double start[3];
-    bool active[REFERENCE_WALL_MAX];
-    memset(node->velocity, 0, sizeof node->velocity);
-    memset(node->correction, 0, sizeof node->correction);
+    double start[3], before[3];
     memset(&contact, 0, sizeof contact);
-    if (node->mass <= reference->mass_cutoff)
-        return;
-    free_increment(reference, node, contact.increment);
     for (int axis = 0; axis < 3; axis++) {
         start[axis] = node->momentum[axis] / node->mass;
-        const double moved = start[axis] + (last ? contact.increment[axis] : 0.0);
-        const double braked = brake(reference, moved, contact.increment[axis]);
-        node->velocity[axis] = moved + braked;
-        reference->damping_energy -= node->mass * braked * (moved + 0.5 * braked);
-        contact.free_velocity[axis] =
-            node->velocity[axis] + (last ? 0.0 : contact.increment[axis] - node->kick[axis]);
-        node->correction[axis] = node->velocity[axis] - start[axis];
+        before[axis] = start[axis] - (last ? 0.0 : node->kick[axis]);
+        contact.increment[axis] = increment[axis];
+        contact.free_velocity[axis] = before[axis] + increment[axis];
     }
-    if (!find_walls(reference, index, active))
-        return;
     reference_contact_solve(reference->walls, reference->wall_count, active, node->mass,
                             reference->time_step, &contact);
+    brake_at_wall(reference, node->mass, before, &contact);
     for (int axis = 0; axis < 3; axis++) {
         node->velocity[axis] = contact.velocity[axis];
         node->correction[axis] = contact.handed[axis] - start[axis];
@@ -255,6 +272,28 @@ static void update_node(struct reference *reference, size_t index)
             reference->wall_energy -= contact.impulse[k][axis] * contact.velocity[axis];
         }
     }
+}
+
+static void update_node(struct reference *reference, size_t index)
+{
+    struct reference_node *node = &reference->nodes[index];
+    const bool last = reference->scene->solver.stress_update == TALUS_STRESS_LAST;
+    bool active[REFERENCE_WALL_MAX];
+    double increment[3];
+    memset(node->velocity, 0, sizeof node->velocity);
+    memset(node->correction, 0, sizeof node->correction);
+    if (node->mass <= reference->mass_cutoff)
+        return;
+    free_increment(reference, node, increment);
+    if (find_walls(reference, index, active)) {
+        update_wall_node(reference, node, active, increment);
+        return;
+    }
+    for (int axis = 0; axis < 3; axis++)
+        node->velocity[axis] = node->momentum[axis] / node->mass + (last ? increment[axis] : 0.0);
+    brake(reference, node, increment);
+    for (int axis = 0; axis < 3; axis++)
+        node->correction[axis] = node->velocity[axis] - node->momentum[axis] / node->mass;
 }
 
 static void move_particles(struct reference *reference)
