@@ -146,7 +146,7 @@ TALUS_INLINE size_t log_strain_kernel(size_t count, size_t components, double *c
         size_t end = count - begin < CHUNK ? count : begin + CHUNK;
         double large[CHUNK];
         double large_count = 0.0;
-#pragma omp simd reduction(+ : large_count)
+#pragma omp simd
         for (size_t slot = begin; slot < end; slot++) {
             struct sym3 given = load(e, slot, components);
             struct sym3 x =
@@ -155,8 +155,9 @@ TALUS_INLINE size_t log_strain_kernel(size_t count, size_t components, double *c
             double is_large = sym3_dot(x, x) <= limit ? 0.0 : 1.0;
             store(strain, slot, components, select(is_large, given, atanh_series(x, components)));
             large[slot - begin] = is_large;
-            large_count += is_large;
         }
+        for (size_t index = 0; index < end - begin; index++)
+            large_count += large[index];
         for (size_t slot = begin; large_count > 0.0 && slot < end; slot++) {
             if (large[slot - begin] != 0.0)
                 failed += log_strain_spectral(strain, slot, components);
@@ -193,14 +194,15 @@ TALUS_INLINE void exp_strain_kernel(size_t count, size_t components, double *con
         size_t end = count - begin < CHUNK ? count : begin + CHUNK;
         double large[CHUNK];
         double large_count = 0.0;
-#pragma omp simd reduction(+ : large_count)
+#pragma omp simd
         for (size_t slot = begin; slot < end; slot++) {
             struct sym3 given = load(strain, slot, components);
             double is_large = sym3_dot(given, given) <= limit ? 0.0 : 1.0;
             store(e, slot, components, select(is_large, given, expm1_series(given, components)));
             large[slot - begin] = is_large;
-            large_count += is_large;
         }
+        for (size_t index = 0; index < end - begin; index++)
+            large_count += large[index];
         for (size_t slot = begin; large_count > 0.0 && slot < end; slot++) {
             if (large[slot - begin] != 0.0)
                 exp_strain_spectral(e, slot, components);
