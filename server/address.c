@@ -13,7 +13,7 @@
 #include <sys/un.h>
 #include <unistd.h>
 
-enum { BACKLOG = 1024 };
+enum { BACKLOG = 1024, BIND_TRIALS = 40, BIND_PAUSE_MICROSECONDS = 50000 };
 
 union address {
     struct sockaddr any;
@@ -37,7 +37,16 @@ static enum talus_status socket_open(const union address *address, socklen_t len
         return listen_error(error, text);
     if (address->any.sa_family != AF_UNIX)
         (void)setsockopt(*descriptor, SOL_SOCKET, SO_REUSEADDR, &one, sizeof one);
-    if (bind(*descriptor, &address->any, length) == 0 && listen(*descriptor, BACKLOG) == 0)
+    /* A child of a daemon that was just killed may hold its socket until it has become a worker. */
+    int bound = -1;
+    for (int trial = 0; trial < BIND_TRIALS && bound != 0; trial++) {
+        if (trial > 0)
+            (void)usleep(BIND_PAUSE_MICROSECONDS);
+        bound = bind(*descriptor, &address->any, length);
+        if (bound != 0 && errno != EADDRINUSE)
+            break;
+    }
+    if (bound == 0 && listen(*descriptor, BACKLOG) == 0)
         return TALUS_OK;
     enum talus_status status = listen_error(error, text);
     (void)close(*descriptor);

@@ -22,6 +22,7 @@
 
 /* Load balancers and scripts see the refusal for at least this long. */
 static const double drain_seconds_min = 0.5;
+enum { LOCK_TRIALS = 40, LOCK_PAUSE_MICROSECONDS = 50000 };
 
 static enum talus_status boot_read(char boot[64], struct talus_error *error)
 {
@@ -50,7 +51,14 @@ static enum talus_status state_take(struct service *service, struct talus_error 
     if (service->lock < 0)
         return talus_error_set(error, TALUS_IO, "state", "", "cannot open %s: %s", path,
                                strerror(errno));
-    if (flock(service->lock, LOCK_EX | LOCK_NB) != 0)
+    /* As with the socket, a child of a killed daemon may hold the lock for a moment. */
+    int held = -1;
+    for (int trial = 0; trial < LOCK_TRIALS && held != 0; trial++) {
+        if (trial > 0)
+            (void)usleep(LOCK_PAUSE_MICROSECONDS);
+        held = flock(service->lock, LOCK_EX | LOCK_NB);
+    }
+    if (held != 0)
         return talus_error_set(error, TALUS_IO, "state", "", "another talusd uses %s",
                                service->state);
     (void)snprintf(path, sizeof path, "%s/jobs", service->state);
