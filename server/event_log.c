@@ -162,7 +162,9 @@ enum talus_status event_tail_read(struct event_tail *tail, const char *folder,
 {
     if (tail->descriptor < 0)
         tail->descriptor = folder_open(folder, PROTOCOL_EVENTS_FILE);
-    if (tail->descriptor < 0)
+    struct stat information;
+    if (tail->descriptor < 0 ||
+        (fstat(tail->descriptor, &information) == 0 && information.st_size <= tail->offset))
         return TALUS_OK;
     size_t capacity = READ_BYTES;
     char *buffer = malloc(capacity);

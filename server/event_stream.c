@@ -117,7 +117,7 @@ static const char *series_event(const char *name)
 static void column_write(struct event_stream *stream, struct event_id id, size_t column,
                          const double *values, size_t row_count)
 {
-    const struct history *history = &stream->history;
+    const struct history_reader *history = &stream->history;
     if (id_known(stream, id))
         return;
     struct text data = {0};
@@ -144,11 +144,12 @@ static void column_write(struct event_stream *stream, struct event_id id, size_t
 /* Tells the next chunk of the rows that a history line announced. */
 static void span_step(struct event_stream *stream)
 {
-    struct history *history = &stream->history;
+    struct history_reader *history = &stream->history;
     int64_t left = stream->span_end - stream->span_row;
     size_t wanted = left < CHUNK_ROWS ? (size_t)left : CHUNK_ROWS;
     double *values = malloc(wanted * history->column_count * sizeof *values);
-    size_t count = values == NULL ? 0 : history_read(history, stream->span_row, wanted, values);
+    size_t count =
+        values == NULL ? 0 : history_reader_read(history, stream->span_row, wanted, values);
     struct event_id id = stream->span_next;
     for (size_t column = 1; column < history->column_count && count > 0; column++, id.number++)
         column_write(stream, id, column, values, count);
@@ -171,7 +172,7 @@ static void history_line(struct event_stream *stream, const json_t *root, int64_
     if (stream->mute || last <= first || end < stream->after.offset)
         return;
     if (stream->history.descriptor < 0 &&
-        history_open(&stream->history, stream->folder, &error) != TALUS_OK)
+        history_reader_open(&stream->history, stream->folder, &error) != TALUS_OK)
         return;
     stream->span_row = first;
     stream->span_end = last;
@@ -192,7 +193,7 @@ static void rewind_line(struct event_stream *stream, const json_t *root)
 {
     stream->row = json_integer_value(json_object_get(root, "row"));
     /* A resumed attempt may have replaced the file. */
-    history_close(&stream->history);
+    history_reader_close(&stream->history);
 }
 
 /* Whether a line is told as it stands. */
@@ -291,7 +292,7 @@ int64_t event_stream_backlog(const struct event_stream *stream)
 void event_stream_close(struct event_stream *stream)
 {
     event_tail_close(&stream->tail);
-    history_close(&stream->history);
+    history_reader_close(&stream->history);
     free(stream->folder);
     free(stream->rewinds);
     free(stream->final_line);

@@ -32,7 +32,7 @@ struct event_stream {
     int64_t last_progress;        /* the only progress line of the replay that is told */
     struct event_rewind *rewinds; /* of the replay */
     size_t rewind_count;
-    struct history history;
+    struct history_reader history;
     int64_t row;                /* rows of history that have been told */
     int64_t span_row, span_end; /* rows of the current history line still to be told */
     struct event_id span_next;  /* id of the first event of the next chunk */

@@ -20,7 +20,7 @@ static json_t *columns_load(const char *folder)
     return root;
 }
 
-static enum talus_status columns_copy(struct history *history, const json_t *columns,
+static enum talus_status columns_copy(struct history_reader *history, const json_t *columns,
                                       struct talus_error *error)
 {
     size_t count = json_array_size(columns);
@@ -40,8 +40,8 @@ static enum talus_status columns_copy(struct history *history, const json_t *col
     return TALUS_OK;
 }
 
-enum talus_status history_open(struct history *history, const char *folder,
-                               struct talus_error *error)
+enum talus_status history_reader_open(struct history_reader *history, const char *folder,
+                                      struct talus_error *error)
 {
     memset(history, 0, sizeof *history);
     history->descriptor = folder_open(folder, PROTOCOL_HISTORY_FILE);
@@ -55,11 +55,11 @@ enum talus_status history_open(struct history *history, const char *folder,
         status = columns_copy(history, columns, error);
     json_decref(root);
     if (status != TALUS_OK)
-        history_close(history);
+        history_reader_close(history);
     return status;
 }
 
-void history_close(struct history *history)
+void history_reader_close(struct history_reader *history)
 {
     for (size_t index = 0; index < history->column_count; index++) {
         free(history->columns[index].name);
@@ -72,7 +72,7 @@ void history_close(struct history *history)
     history->descriptor = -1;
 }
 
-int64_t history_row_count(const struct history *history)
+int64_t history_reader_row_count(const struct history_reader *history)
 {
     struct stat information;
     if (fstat(history->descriptor, &information) != 0)
@@ -80,7 +80,7 @@ int64_t history_row_count(const struct history *history)
     return (int64_t)information.st_size / (int64_t)(history->column_count * sizeof(double));
 }
 
-size_t history_find(const struct history *history, const char *name)
+size_t history_reader_find(const struct history_reader *history, const char *name)
 {
     size_t index = 0;
     while (index < history->column_count && strcmp(history->columns[index].name, name) != 0)
@@ -88,7 +88,8 @@ size_t history_find(const struct history *history, const char *name)
     return index;
 }
 
-size_t history_read(const struct history *history, int64_t first, size_t count, double *values)
+size_t history_reader_read(const struct history_reader *history, int64_t first, size_t count,
+                           double *values)
 {
     size_t row_bytes = history->column_count * sizeof(double);
     size_t wanted = count * row_bytes, done = 0;

@@ -3,8 +3,8 @@
 
 #include "http_checks.h"
 #include "http_watch.h"
-#include "lanes.h"
 #include "request.h"
+#include "work_lanes.h"
 
 #include <stdio.h>
 #include <stdlib.h>

@@ -6,11 +6,11 @@
 #include "folder.h"
 #include "http.h"
 #include "jobs.h"
-#include "lanes.h"
 #include "moment.h"
 #include "recovery.h"
 #include "supervisor.h"
 #include "waits.h"
+#include "work_lanes.h"
 
 #include <errno.h>
 #include <fcntl.h>

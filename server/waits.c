@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 #include "waits.h"
 
-#include "lanes.h"
 #include "moment.h"
 #include "service.h"
+#include "work_lanes.h"
 
 #include <pthread.h>
 #include <stdlib.h>

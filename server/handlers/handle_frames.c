@@ -2,7 +2,7 @@
 /* GET /v1/jobs/ID/frames and /frames/N.png; pictures are drawn by a helper and kept in the job's
  * folder. */
 #include "folder.h"
-#include "frames.h"
+#include "frame_index.h"
 #include "helper.h"
 #include "request.h"
 #include "service.h"
@@ -39,7 +39,7 @@ enum handled handle_frame_list(struct request *request)
     char *folder = request_folder(request);
     if (folder == NULL)
         return HANDLED;
-    json_t *frames = frames_list(folder);
+    json_t *frames = frame_index_read(folder);
     free(folder);
     if (frames == NULL)
         frames_unreadable(request);
@@ -175,7 +175,7 @@ enum handled handle_frame_picture(struct request *request)
     char *folder = request_folder(request);
     if (folder == NULL)
         return HANDLED;
-    json_t *frames = frames_list(folder);
+    json_t *frames = frame_index_read(folder);
     const json_t *frame = frame_find(frames, picture.frame);
     if (frames == NULL)
         frames_unreadable(request);

@@ -43,15 +43,15 @@ static void curve_add(struct curve *curve, double time, double value)
 }
 
 /* The rows of a column within [from, to]. */
-static void curve_read(struct curve *curve, const struct history *history, size_t column,
+static void curve_read(struct curve *curve, const struct history_reader *history, size_t column,
                        double from, double to)
 {
-    int64_t rows = history_row_count(history);
+    int64_t rows = history_reader_row_count(history);
     double *block = malloc(BLOCK_ROWS * history->column_count * sizeof *block);
     curve->failed = block == NULL;
     for (int64_t first = 0; first < rows && !curve->failed; first += BLOCK_ROWS) {
         size_t wanted = rows - first < BLOCK_ROWS ? (size_t)(rows - first) : BLOCK_ROWS;
-        size_t count = history_read(history, first, wanted, block);
+        size_t count = history_reader_read(history, first, wanted, block);
         for (size_t row = 0; row < count && !curve->failed; row++) {
             const double *values = block + row * history->column_count;
             if (values[0] >= from && values[0] <= to)
@@ -106,13 +106,13 @@ static void curve_print_csv(struct text *text, const struct curve *curve,
 }
 
 /* Opens the history of the job in the path. False: the reply is made. */
-static bool history_of_request(struct request *request, struct history *history)
+static bool history_of_request(struct request *request, struct history_reader *history)
 {
     struct talus_error error = {0};
     char *folder = request_folder(request);
     if (folder == NULL)
         return false;
-    enum talus_status status = history_open(history, folder, &error);
+    enum talus_status status = history_reader_open(history, folder, &error);
     free(folder);
     if (status != TALUS_OK)
         reply_error(&request->reply, request->raw, &error);
@@ -122,7 +122,7 @@ static bool history_of_request(struct request *request, struct history *history)
 enum handled handle_series_list(struct request *request)
 {
     static const char *const allowed[] = {NULL};
-    struct history history;
+    struct history_reader history;
     if (!request_query_check(request, allowed))
         return HANDLED;
     char *folder = request_folder(request);
@@ -130,21 +130,21 @@ enum handled handle_series_list(struct request *request)
         return HANDLED;
     struct talus_error error = {0};
     json_t *list = json_array();
-    if (history_open(&history, folder, &error) == TALUS_OK) {
-        json_int_t rows = history_row_count(&history);
+    if (history_reader_open(&history, folder, &error) == TALUS_OK) {
+        json_int_t rows = history_reader_row_count(&history);
         for (size_t index = 1; index < history.column_count; index++)
             (void)json_array_append_new(list, json_pack("{s:s, s:s, s:I}", "name",
                                                         history.columns[index].name, "unit",
                                                         history.columns[index].unit, "rows", rows));
-        history_close(&history);
+        history_reader_close(&history);
     }
     free(folder);
     reply_json(&request->reply, MHD_HTTP_OK, list);
     return HANDLED;
 }
 
-static void series_reply(struct request *request, const struct history *history, size_t column,
-                         const double limits[3])
+static void series_reply(struct request *request, const struct history_reader *history,
+                         size_t column, const double limits[3])
 {
     struct curve curve = {0};
     struct text text = {0};
@@ -168,7 +168,7 @@ static void series_reply(struct request *request, const struct history *history,
 enum handled handle_series(struct request *request)
 {
     static const char *const allowed[] = {"from", "to", "max_points", NULL};
-    struct history history;
+    struct history_reader history;
     double limits[3];
     if (!request_query_check(request, allowed) ||
         !request_query_number(request, "from", -HUGE_VAL, HUGE_VAL, -HUGE_VAL, &limits[0]) ||
@@ -176,12 +176,12 @@ enum handled handle_series(struct request *request)
         !request_query_number(request, "max_points", 4, POINTS_MAX, 0, &limits[2]) ||
         !history_of_request(request, &history))
         return HANDLED;
-    size_t column = history_find(&history, request->rest);
+    size_t column = history_reader_find(&history, request->rest);
     if (column == 0 || column == history.column_count)
         reply_problem(&request->reply, MHD_HTTP_NOT_FOUND, "not_found", request->raw, NULL,
                       "the job has no series %s", request->rest);
     else
         series_reply(request, &history, column, limits);
-    history_close(&history);
+    history_reader_close(&history);
     return HANDLED;
 }

@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-#ifndef TALUS_FRAMES_H
-#define TALUS_FRAMES_H
+#ifndef TALUS_FRAME_INDEX_H
+#define TALUS_FRAME_INDEX_H
 
 #include <jansson.h>
 
 /* The frames that a job's event file tells of, by number, without those that a resume made void:
  * [{"n", "time", "step", "particles", "fields", "bytes", "sha256", "file"}]. New reference, NULL
  * if the file cannot be read. */
-json_t *frames_list(const char *folder);
+json_t *frame_index_read(const char *folder);
 
 #endif

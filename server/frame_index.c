@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-#include "frames.h"
+#include "frame_index.h"
 
 #include "base/protocol.h"
 #include "event_log.h"
@@ -55,7 +55,7 @@ static bool frames_line(char *line, size_t length, int64_t end, void *context)
     return true;
 }
 
-json_t *frames_list(const char *folder)
+json_t *frame_index_read(const char *folder)
 {
     struct talus_error error = {0};
     struct event_tail tail = {.descriptor = -1};

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Threads that do the slow part of requests while their connections are suspended: a few for files
  * and the store, and one for each helper process. */
-#ifndef TALUS_LANES_H
-#define TALUS_LANES_H
+#ifndef TALUS_WORK_LANES_H
+#define TALUS_WORK_LANES_H
 
 #include "config.h"
 #include "request.h"
