@@ -212,61 +212,58 @@ static void kick(struct reference *reference)
     }
 }
 
-/* Local damping: opposes the motion by a share of the out-of-balance force, never reverses it. */
-static void brake(struct reference *reference, struct reference_node *node,
-                  const double increment[3])
+/* Local damping of a free node: opposes each component of the motion by a share of the
+ * out-of-balance force, never reverses it. Its work is that over the mean velocity of the step. */
+static void brake_free(struct reference *reference, struct reference_node *node,
+                       const double increment[3])
 {
     const double share = reference->scene->solver.local_damping;
     for (int axis = 0; axis < 3; axis++) {
-        const double moved = node->velocity[axis];
-        const double size = fmin(share * fabs(increment[axis]), fabs(moved));
-        const double braked = moved > 0 ? -size : size;
+        const double size = fmin(share * fabs(increment[axis]), fabs(node->velocity[axis]));
+        const double braked = node->velocity[axis] > 0 ? -size : size;
         node->velocity[axis] += braked;
         reference->damping_energy -=
-            node->mass * braked * (moved + 0.5 * (braked - increment[axis]));
+            node->mass * braked * (node->velocity[axis] - 0.5 * (braked + increment[axis]));
     }
 }
 
-/* The same at walls: a share of what the walls leave unbalanced, along the motion. */
-static void brake_at_wall(struct reference *reference, double mass, const double before[3],
-                          struct reference_contact *contact)
+/* At a wall: a share of what the walls leave unbalanced, along the motion that they leave. */
+static void brake_at_wall(struct reference *reference, const struct reference_node *node,
+                          const double before[3], struct reference_contact *contact)
 {
-    const double share = reference->scene->solver.local_damping;
-    double speed = 0, gain = 0;
-    for (int axis = 0; axis < 3; axis++)
-        speed += contact->velocity[axis] * contact->velocity[axis];
-    speed = sqrt(speed);
-    if (speed == 0)
-        return;
-    for (int axis = 0; axis < 3; axis++)
-        gain += (contact->velocity[axis] - before[axis]) * contact->velocity[axis] / speed;
+    double square = 0, gain = 0;
     for (int axis = 0; axis < 3; axis++) {
-        const double braked = -fmin(share * fabs(gain), speed) * contact->velocity[axis] / speed;
+        square += contact->velocity[axis] * contact->velocity[axis];
+        gain += contact->velocity[axis] * (contact->velocity[axis] - before[axis]);
+    }
+    if (square == 0)
+        return;
+    const double share = fmin(1.0, reference->scene->solver.local_damping * fabs(gain) / square);
+    for (int axis = 0; axis < 3; axis++) {
+        const double braked = -share * contact->velocity[axis];
         contact->velocity[axis] += braked;
         contact->handed[axis] += braked;
-        reference->damping_energy -= mass * braked * 0.5 * (contact->velocity[axis] + before[axis]);
+        reference->damping_energy -=
+            node->mass * braked * 0.5 * (contact->velocity[axis] + before[axis]);
     }
 }
 
-static void update_wall_node(struct reference *reference, struct reference_node *node,
-                             const bool active[REFERENCE_WALL_MAX], const double increment[3])
+static void apply_walls(struct reference *reference, struct reference_node *node,
+                        const bool active[REFERENCE_WALL_MAX], const double before[3],
+                        const double increment[3])
 {
-    const bool last = reference->scene->solver.stress_update == TALUS_STRESS_LAST;
     struct reference_contact contact;
-    double start[3], before[3];
     memset(&contact, 0, sizeof contact);
     for (int axis = 0; axis < 3; axis++) {
-        start[axis] = node->momentum[axis] / node->mass;
-        before[axis] = start[axis] - (last ? 0.0 : node->kick[axis]);
         contact.increment[axis] = increment[axis];
         contact.free_velocity[axis] = before[axis] + increment[axis];
     }
     reference_contact_solve(reference->walls, reference->wall_count, active, node->mass,
                             reference->time_step, &contact);
-    brake_at_wall(reference, node->mass, before, &contact);
+    brake_at_wall(reference, node, before, &contact);
     for (int axis = 0; axis < 3; axis++) {
         node->velocity[axis] = contact.velocity[axis];
-        node->correction[axis] = contact.handed[axis] - start[axis];
+        node->correction[axis] = contact.handed[axis];
         for (int k = 0; k < reference->wall_count; k++) {
             reference->wall_impulse[k][axis] -= contact.impulse[k][axis];
             reference->wall_energy -= contact.impulse[k][axis] * contact.velocity[axis];
@@ -278,22 +275,31 @@ static void update_node(struct reference *reference, size_t index)
 {
     struct reference_node *node = &reference->nodes[index];
     const bool last = reference->scene->solver.stress_update == TALUS_STRESS_LAST;
+    double increment[3], before[3];
     bool active[REFERENCE_WALL_MAX];
-    double increment[3];
     memset(node->velocity, 0, sizeof node->velocity);
     memset(node->correction, 0, sizeof node->correction);
     if (node->mass <= reference->mass_cutoff)
         return;
     free_increment(reference, node, increment);
+    for (int axis = 0; axis < 3; axis++) {
+        const double carried = node->momentum[axis] / node->mass;
+        before[axis] = last ? carried : carried - node->kick[axis];
+        node->velocity[axis] = last ? carried + increment[axis] : carried;
+    }
     if (find_walls(reference, index, active)) {
-        update_wall_node(reference, node, active, increment);
-        return;
+        apply_walls(reference, node, active, before, increment);
+    } else {
+        brake_free(reference, node, increment);
+        memcpy(node->correction, node->velocity, sizeof node->correction);
     }
     for (int axis = 0; axis < 3; axis++)
-        node->velocity[axis] = node->momentum[axis] / node->mass + (last ? increment[axis] : 0.0);
-    brake(reference, node, increment);
+        node->correction[axis] -= node->momentum[axis] / node->mass;
+    /* The potential counts the whole of gravity; what a ramp holds back is external work. */
     for (int axis = 0; axis < 3; axis++)
-        node->correction[axis] = node->velocity[axis] - node->momentum[axis] / node->mass;
+        reference->external_energy -= (1 - force_factor(reference)) * node->mass *
+                                      reference->scene->gravity[axis] * node->velocity[axis] *
+                                      reference->time_step;
 }
 
 static void move_particles(struct reference *reference)
@@ -338,7 +344,8 @@ void reference_step(struct reference *reference)
 
 struct reference_energy reference_energies(const struct reference *reference)
 {
-    struct reference_energy energy = {.dissipated =
+    struct reference_energy energy = {.external = reference->external_energy,
+                                      .dissipated =
                                           reference->plastic_energy + reference->viscous_energy +
                                           reference->damping_energy + reference->wall_energy};
     for (size_t k = 0; k < reference->particle_count; k++) {

@@ -38,12 +38,13 @@ struct reference {
     struct reference_wall walls[REFERENCE_WALL_MAX];
     int wall_count;
     double time, time_step, mass_cutoff;
+    double external_energy; /* work of the force ramp so far [J] */
     double plastic_energy, viscous_energy, damping_energy, wall_energy; /* dissipated so far [J] */
     double wall_impulse[REFERENCE_WALL_MAX][3]; /* of the last step, on the walls [N s] */
 };
 
 struct reference_energy {
-    double kinetic, strain, potential, dissipated;
+    double kinetic, strain, potential, dissipated, external;
 };
 
 /* From the particles of a simulation at t = 0 (positions, velocities, masses, volumes). */
