@@ -188,7 +188,8 @@ static void check_shape(struct scene_reader *reader, const struct scene_path *pa
     if (reader->axis_count != 3 && reader->axis_count != 0)
         scene_mistake(reader, &here, "contradiction", NULL, NULL,
                       "a cylinder needs the dimension \"solid\"");
-    else if (memcmp(body->from, body->to, sizeof body->from) == 0)
+    else if (body->from[0] == body->to[0] && body->from[1] == body->to[1] &&
+             body->from[2] == body->to[2])
         scene_mistake(reader, &end, "range", NULL, NULL, "'from' and 'to' are the same point");
 }
 

@@ -29,8 +29,8 @@ void scene_component_words(size_t count, size_t axis_count, const char *words[10
     static const char *const matrix[] = {"xx", "xy", "xz", "yx", "yy", "yz", "zx", "zy", "zz"};
     const char *const *all = count == 9 ? matrix : (count == 6 ? tensor : vector);
     memset(words, 0, 10 * sizeof *words);
-    if (count == 1)
-        return;
+    if (count != 3 && count != 6 && count != 9)
+        return; /* a single number has no components */
     for (size_t index = 0; index < count; index++) {
         /* Out of plane only the normal components of tensors exist. */
         const char *word = all[index];

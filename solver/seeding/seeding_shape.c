@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 #include "seeding/seeding_shape.h"
 
+#include <assert.h>
 #include <math.h>
 #include <string.h>
 
@@ -21,6 +22,7 @@ static void bound_body(const struct talus_body *body, size_t axis_count, double 
                        double max[3])
 {
     double axis[3] = {0.0, 0.0, 0.0};
+    assert(axis_count <= 3);
     if (body->shape == TALUS_BODY_CYLINDER)
         (void)cylinder_axis(body, axis);
     for (size_t k = 0; k < axis_count; k++) {

@@ -12,7 +12,7 @@
 
 #include <cmocka.h>
 
-#define assert_within(value, expected, tolerance)                                                  \
+#define ASSERT_WITHIN(value, expected, tolerance)                                                  \
     assert_true(fabs((value) - (expected)) <= (tolerance))
 
 static const double pi = 3.14159265358979323846;
@@ -50,14 +50,14 @@ static void box_is_filled_exactly(void **state)
         fixture_init(&fixture, axis_count, "linear_elastic");
         struct particle_seed seed = create(&fixture);
         assert_int_equal(seed.count, (size_t)pow(8.0, (double)axis_count));
-        assert_within(total(seed.volume, seed.count), 1.0, 1e-14);
-        assert_within(total(seed.mass, seed.count), 2000.0, 1e-10);
-        assert_within(seed.volume_factor[0], 1.0, 0.0);
-        assert_within(seed.position[0][0], 0.0625, 1e-15); /* half a spacing from the side */
-        assert_within(seed.position[0][1], 0.1875, 1e-15); /* x runs fastest */
+        ASSERT_WITHIN(total(seed.volume, seed.count), 1.0, 1e-14);
+        ASSERT_WITHIN(total(seed.mass, seed.count), 2000.0, 1e-10);
+        ASSERT_WITHIN(seed.volume_factor[0], 1.0, 0.0);
+        ASSERT_WITHIN(seed.position[0][0], 0.0625, 1e-15); /* half a spacing from the side */
+        ASSERT_WITHIN(seed.position[0][1], 0.1875, 1e-15); /* x runs fastest */
         assert_null(seed.stress[0]);
         for (size_t k = axis_count; k < 3; k++)
-            assert_within(total(seed.position[k], seed.count), 0.0, 0.0);
+            ASSERT_WITHIN(total(seed.position[k], seed.count), 0.0, 0.0);
         seeding_release(&seed);
     }
 }
@@ -78,9 +78,9 @@ static void lattices_round_to_the_bounding_box(void **state)
     body->lattice_value[1] = 5.0;  /* 0.2 points: at least one */
     struct particle_seed seed = create(&fixture);
     assert_int_equal(seed.count, 4);
-    assert_within(seed.position[0][0], 0.9 / 8.0, 1e-15);
-    assert_within(seed.position[1][0], 0.5, 1e-15);
-    assert_within(total(seed.volume, seed.count), 0.9, 1e-14);
+    ASSERT_WITHIN(seed.position[0][0], 0.9 / 8.0, 1e-15);
+    ASSERT_WITHIN(seed.position[1][0], 0.5, 1e-15);
+    ASSERT_WITHIN(total(seed.volume, seed.count), 0.9, 1e-14);
     seeding_release(&seed);
     body->lattice = TALUS_LATTICE_COUNT;
     body->lattice_value[0] = 35.0;
@@ -105,7 +105,7 @@ static void disc_and_sphere_have_exact_volume(void **state)
         fixture_init(&fixture, axis_count, "linear_elastic");
         make_sphere(&fixture.bodies[0], 1.0);
         struct particle_seed seed = create(&fixture);
-        assert_within(total(seed.volume, seed.count), volumes[axis_count], 1e-12);
+        ASSERT_WITHIN(total(seed.volume, seed.count), volumes[axis_count], 1e-12);
         assert_true(seed.volume_factor[0] > 0.95 && seed.volume_factor[0] < 1.05);
         uint64_t particles, cells;
         seeding_count(&fixture.scene, &particles, &cells);
@@ -117,7 +117,7 @@ static void disc_and_sphere_have_exact_volume(void **state)
             assert_true(square <= 1.0 + 1e-9);
         }
         for (size_t k = 0; k < axis_count; k++) /* mirror images about the centre */
-            assert_within(total(seed.position[k], seed.count), 0.0, 1e-11);
+            ASSERT_WITHIN(total(seed.position[k], seed.count), 0.0, 1e-11);
         seeding_release(&seed);
     }
 }
@@ -141,8 +141,8 @@ static void quarter_cylinder_of_the_source(void **state)
     struct particle_seed seed = create(&fixture);
     assert_int_equal(seed.count, 9408);
     double exact = pi * 0.04 * 0.04 / 4.0 * 0.28;
-    assert_within(seeding_body_volume(&fixture.scene, body), exact, 1e-9 * exact);
-    assert_within(total(seed.volume, seed.count), exact, 1e-9 * exact);
+    ASSERT_WITHIN(seeding_body_volume(&fixture.scene, body), exact, 1e-9 * exact);
+    ASSERT_WITHIN(total(seed.volume, seed.count), exact, 1e-9 * exact);
     seeding_release(&seed);
 }
 
@@ -159,17 +159,17 @@ static void oblique_cylinder(void **state)
     body->to[2] = 1.0;
     body->radius = 0.75;
     double length = 3.0, exact = pi * 0.75 * 0.75 * length;
-    assert_within(seeding_body_volume(&fixture.scene, body), exact, 1e-12);
+    ASSERT_WITHIN(seeding_body_volume(&fixture.scene, body), exact, 1e-12);
     struct particle_seed seed = create(&fixture);
-    assert_within(total(seed.volume, seed.count), exact, 1e-10);
+    ASSERT_WITHIN(total(seed.volume, seed.count), exact, 1e-10);
     assert_true(fabs(seed.volume_factor[0] - 1.0) < 0.02);
     double centre = 0.0;
     for (size_t index = 0; index < seed.count; index++)
         centre += seed.position[1][index] / (double)seed.count;
-    assert_within(centre, 1.0, 1e-9);
+    ASSERT_WITHIN(centre, 1.0, 1e-9);
     seeding_release(&seed);
     body->clip_min[1] = 1.0; /* through the middle: half of it by symmetry */
-    assert_within(seeding_body_volume(&fixture.scene, body), 0.5 * exact, 1e-8);
+    ASSERT_WITHIN(seeding_body_volume(&fixture.scene, body), 0.5 * exact, 1e-8);
 }
 
 static void cut_shapes(void **state)
@@ -180,20 +180,20 @@ static void cut_shapes(void **state)
     struct talus_body *body = &fixture.bodies[0];
     make_sphere(body, 1.0);
     body->clip_min[1] = 0.5; /* a cap of height 1/2: pi h^2 (3 r - h) / 3 */
-    assert_within(seeding_body_volume(&fixture.scene, body), pi * 0.25 * 2.5 / 3.0, 1e-8);
+    ASSERT_WITHIN(seeding_body_volume(&fixture.scene, body), pi * 0.25 * 2.5 / 3.0, 1e-8);
     body->clip_min[1] = 0.0;
     body->clip_min[0] = body->clip_min[2] = 0.0; /* an eighth */
-    assert_within(seeding_body_volume(&fixture.scene, body), pi / 6.0, 1e-9);
+    ASSERT_WITHIN(seeding_body_volume(&fixture.scene, body), pi / 6.0, 1e-9);
     fixture_init(&fixture, 2, "linear_elastic");
     make_sphere(body, 1.0);
     body->clip_min[0] = 0.5; /* segment: r^2 (a - sin a) / 2 with a = 120 deg */
-    assert_within(seeding_body_volume(&fixture.scene, body),
+    ASSERT_WITHIN(seeding_body_volume(&fixture.scene, body),
                   0.5 * (2.0 * pi / 3.0 - sin(2.0 * pi / 3.0)), 1e-12);
     fixture_init(&fixture, 2, "linear_elastic");
     body->clip_max[1] = 0.25;
     struct particle_seed seed = create(&fixture);
     assert_int_equal(seed.count, 8 * 2);
-    assert_within(total(seed.volume, seed.count), 0.25, 1e-15);
+    ASSERT_WITHIN(total(seed.volume, seed.count), 0.25, 1e-15);
     seeding_release(&seed);
 }
 
@@ -211,7 +211,7 @@ static void bodies_follow_each_other(void **state)
     assert_int_equal(seed.count, 128);
     for (size_t index = 0; index < seed.count; index++) {
         assert_int_equal(seed.body[index], index < 64 ? 0 : 1);
-        assert_within(seed.velocity[0][index], index < 64 ? 0.0 : -4.0, 0.0);
+        ASSERT_WITHIN(seed.velocity[0][index], index < 64 ? 0.0 : -4.0, 0.0);
         assert_true((seed.position[0][index] > 2.0) == (index >= 64));
     }
     seeding_release(&seed);

@@ -11,7 +11,7 @@
 
 #include <cmocka.h>
 
-#define assert_within(value, expected, tolerance)                                                  \
+#define ASSERT_WITHIN(value, expected, tolerance)                                                  \
     assert_true(fabs((value) - (expected)) <= (tolerance))
 
 static const double weight = 2000.0 * 9.81; /* [N/m^3] of the fixture's material */
@@ -27,7 +27,7 @@ static struct particle_seed create(const struct seeding_fixture *fixture)
 
 static void assert_near(double value, double expected)
 {
-    assert_within(value, expected, 1e-9 * (fabs(expected) + 1.0));
+    ASSERT_WITHIN(value, expected, 1e-9 * (fabs(expected) + 1.0));
 }
 
 static void geostatic_follows_depth(void **state)
@@ -48,7 +48,7 @@ static void geostatic_follows_depth(void **state)
         assert_near(seed.stress[0][index], 0.43 * vertical);
         assert_near(seed.stress[2][index], 0.43 * vertical);
         for (size_t k = 3; k < 6; k++)
-            assert_within(seed.stress[k][index], 0.0, 0.0);
+            ASSERT_WITHIN(seed.stress[k][index], 0.0, 0.0);
     }
     seeding_release(&seed);
 }
@@ -70,7 +70,7 @@ static void depth_is_below_the_surface_over_the_particle(void **state)
         double x = seed.position[0][index], y = seed.position[1][index];
         double top = -sqrt(1.0 - x * x - y * y);
         double expected = -weight * (seed.position[2][index] - top);
-        assert_within(seed.stress[2][index], expected, 1e-6 * weight);
+        ASSERT_WITHIN(seed.stress[2][index], expected, 1e-6 * weight);
         assert_true(seed.stress[2][index] <= 0.0);
     }
     seeding_release(&seed);
@@ -124,8 +124,8 @@ static void given_components_are_copied(void **state)
         fixture.bodies[1].stress[k] = 1.0 + (double)k;
     struct particle_seed seed = create(&fixture);
     for (size_t k = 0; k < 6; k++) {
-        assert_within(seed.stress[k][0], 0.0, 0.0);
-        assert_within(seed.stress[k][seed.count - 1], 1.0 + (double)k, 0.0);
+        ASSERT_WITHIN(seed.stress[k][0], 0.0, 0.0);
+        ASSERT_WITHIN(seed.stress[k][seed.count - 1], 1.0 + (double)k, 0.0);
     }
     seeding_release(&seed);
 }
