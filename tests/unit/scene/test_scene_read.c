@@ -18,7 +18,7 @@
 
 #include <cmocka.h>
 
-#define assert_within(value, expected, tolerance)                                                  \
+#define ASSERT_WITHIN(value, expected, tolerance)                                                  \
     assert_true(fabs((value) - (expected)) <= (tolerance))
 
 /* Reads a changed base that must be valid. */
@@ -44,17 +44,17 @@ static void values_arrive(void **state)
     assert_int_equal(scene->grid.cell_count[0], 40);
     assert_int_equal(scene->grid.cell_count[1], 20);
     assert_int_equal(scene->grid.cell_count[2], 1);
-    assert_within(scene->grid.cell[2], 1.0, 0.0);
-    assert_within(scene->gravity[1], -9.81, 0.0);
+    ASSERT_WITHIN(scene->grid.cell[2], 1.0, 0.0);
+    ASSERT_WITHIN(scene->gravity[1], -9.81, 0.0);
     assert_int_equal(scene->solver.anti_locking, TALUS_CONTROL_CELL);
     const struct talus_material *soil = &scene->materials[0];
     const struct material *model = material_table[soil->model_index];
     assert_string_equal(soil->name, "soil");
     assert_string_equal(model->name, "drucker_prager_cap");
-    assert_within(soil->values[MATERIAL_VALUE_DENSITY], 2000.0, 0.0);
-    assert_within(soil->values[material_parameter_index(model, "friction_angle")], 30.0, 0.0);
+    ASSERT_WITHIN(soil->values[MATERIAL_VALUE_DENSITY], 2000.0, 0.0);
+    ASSERT_WITHIN(soil->values[material_parameter_index(model, "friction_angle")], 30.0, 0.0);
     assert_true(isnan(soil->values[material_parameter_index(model, "young_modulus")]));
-    assert_within(soil->values[material_parameter_index(model, "dilation_angle")], 0.0, 0.0);
+    ASSERT_WITHIN(soil->values[material_parameter_index(model, "dilation_angle")], 0.0, 0.0);
     assert_true(isnan(soil->values[material_parameter_index(model, "flow_ratio")]));
     const struct talus_body *heap = &scene->bodies[0];
     assert_string_equal(heap->name, "heap");
@@ -62,11 +62,11 @@ static void values_arrive(void **state)
     assert_int_equal(heap->lattice, TALUS_LATTICE_PER_CELL);
     assert_int_equal(heap->initial_stress, TALUS_INITIAL_GEOSTATIC);
     assert_int_equal(heap->k0_rule, TALUS_K0_GIVEN);
-    assert_within(heap->k0, 0.5, 0.0);
+    ASSERT_WITHIN(heap->k0, 0.5, 0.0);
     assert_true(heap->clip_min[0] == -INFINITY && heap->clip_max[1] == INFINITY);
     const struct talus_boundary *floor_plane = &scene->boundaries[0];
     assert_string_equal(boundary_table[floor_plane->faces[0].condition_index]->name, "friction");
-    assert_within(floor_plane->faces[0].friction_coefficient, 1.0 / sqrt(3.0), 1e-12);
+    ASSERT_WITHIN(floor_plane->faces[0].friction_coefficient, 1.0 / sqrt(3.0), 1e-12);
     assert_int_equal(scene->boundaries[1].face_count, 4);
     assert_int_equal(scene->probes[1].boundary_index, 1);
     assert_int_equal(scene->probes[1].face_index, 0);
@@ -83,26 +83,26 @@ static void defaults_are_the_documented_ones(void **state)
     const struct talus_scene *scene = &result.scene;
     const struct talus_solver_options *solver = &scene->solver;
     assert_string_equal(scene->title, "");
-    assert_within(solver->time_step, 0.0, 0.0);
-    assert_within(solver->courant, 0.4, 0.0);
+    ASSERT_WITHIN(solver->time_step, 0.0, 0.0);
+    ASSERT_WITHIN(solver->courant, 0.4, 0.0);
     assert_false(solver->allow_unstable);
     assert_string_equal(shape_table[solver->shape_index]->name, "linear");
     assert_int_equal(solver->stress_update, TALUS_STRESS_MODIFIED_LAST);
     assert_int_equal(solver->strain, TALUS_STRAIN_FINITE);
     assert_int_equal(solver->anti_locking, TALUS_CONTROL_NONE);
-    assert_within(solver->pic_rate + solver->viscous_damping + solver->local_damping +
+    ASSERT_WITHIN(solver->pic_rate + solver->viscous_damping + solver->local_damping +
                       solver->force_ramp,
                   0.0, 0.0);
     assert_int_equal(scene->grid.outside, TALUS_OUTSIDE_ERROR);
-    assert_within(scene->grid.outside_mass_limit, 0.001, 0.0);
-    assert_within(scene->output.frames_every, 0.02, 1e-15);
-    assert_within(scene->output.history_every, 0.005, 1e-15);
-    assert_within(scene->output.checkpoint_every, 60.0, 0.0);
+    ASSERT_WITHIN(scene->grid.outside_mass_limit, 0.001, 0.0);
+    ASSERT_WITHIN(scene->output.frames_every, 0.02, 1e-15);
+    ASSERT_WITHIN(scene->output.history_every, 0.005, 1e-15);
+    ASSERT_WITHIN(scene->output.checkpoint_every, 60.0, 0.0);
     assert_int_equal(scene->output.frame_fields, 1u << TALUS_FIELD_VELOCITY |
                                                      1u << TALUS_FIELD_STRESS |
                                                      1u << TALUS_FIELD_PLASTIC_STRAIN);
     assert_int_equal(scene->output.grid_fields, 0);
-    assert_within(scene->energy_growth_limit, 0.01, 0.0);
+    ASSERT_WITHIN(scene->energy_growth_limit, 0.01, 0.0);
     assert_string_equal(scene->bodies[0].name, "body_0");
     assert_string_equal(scene->boundaries[0].name, "boundary_0");
     assert_int_equal(scene->bodies[0].initial_stress, TALUS_INITIAL_NONE);
@@ -122,17 +122,17 @@ static void faces_have_axes_and_sizes(void **state)
     const struct talus_boundary *first = &result.scene.boundaries[0];
     const struct talus_boundary *second = &result.scene.boundaries[1];
     /* normal y: t1 = z, t2 = y x z = x */
-    assert_within(first->axis_1[2], 1.0, 0.0);
-    assert_within(first->axis_2[0], 1.0, 0.0);
-    assert_within(first->size[0], 4.0, 1e-12);
-    assert_within(first->size[1], 6.0, 1e-12);
-    assert_within(first->point[0], 5.0, 1e-12);
-    assert_within(first->moment_about[2], 4.0, 1e-12);
+    ASSERT_WITHIN(first->axis_1[2], 1.0, 0.0);
+    ASSERT_WITHIN(first->axis_2[0], 1.0, 0.0);
+    ASSERT_WITHIN(first->size[0], 4.0, 1e-12);
+    ASSERT_WITHIN(first->size[1], 6.0, 1e-12);
+    ASSERT_WITHIN(first->point[0], 5.0, 1e-12);
+    ASSERT_WITHIN(first->moment_about[2], 4.0, 1e-12);
     /* normal -z: z is parallel, so t1 = x, t2 = -z x x = -y */
-    assert_within(second->normal[2], -1.0, 0.0);
-    assert_within(second->axis_1[0], 1.0, 0.0);
-    assert_within(second->axis_2[1], -1.0, 0.0);
-    assert_within(second->size[1], 4.0, 0.0);
+    ASSERT_WITHIN(second->normal[2], -1.0, 0.0);
+    ASSERT_WITHIN(second->axis_1[0], 1.0, 0.0);
+    ASSERT_WITHIN(second->axis_2[1], -1.0, 0.0);
+    ASSERT_WITHIN(second->size[1], 4.0, 0.0);
     fixture_result_release(&result);
 }
 
@@ -147,12 +147,12 @@ static void boxes_have_faces_of_their_own(void **state)
     struct fixture_result result = read_valid(scene);
     const struct talus_boundary *box = &result.scene.boundaries[1];
     assert_string_equal(boundary_table[box->faces[3].condition_index]->name, "friction");
-    assert_within(box->faces[3].friction_coefficient, 0.3, 0.0);
+    ASSERT_WITHIN(box->faces[3].friction_coefficient, 0.3, 0.0);
     assert_string_equal(boundary_table[box->faces[0].condition_index]->name, "slip");
     assert_true(box->tension_release && box->area_source_rule);
-    assert_within(box->tension_force, -5.0, 0.0);
-    assert_within(box->moment_about[0], 9.0, 0.0); /* the centre of its base */
-    assert_within(box->moment_about[1], 0.0, 0.0);
+    ASSERT_WITHIN(box->tension_force, -5.0, 0.0);
+    ASSERT_WITHIN(box->moment_about[0], 9.0, 0.0); /* the centre of its base */
+    ASSERT_WITHIN(box->moment_about[1], 0.0, 0.0);
     fixture_result_release(&result);
 }
 
@@ -180,7 +180,7 @@ static void initial_stresses_have_many_forms(void **state)
         assert_int_equal(body->initial_stress, forms[index].kind);
         assert_int_equal(body->k0_rule, forms[index].rule);
         assert_true(isnan(body->surface) == (index != 2));
-        assert_within(body->stress[3], index == 6 ? 0.5 : 0.0, 0.0);
+        ASSERT_WITHIN(body->stress[3], index == 6 ? 0.5 : 0.0, 0.0);
         fixture_result_release(&result);
     }
 }
@@ -193,7 +193,7 @@ static void grids_are_rounded_up(void **state)
     struct fixture_result result = read_valid(scene);
     const json_t *max = json_object_get(json_object_get(result.effective, "grid"), "max");
     assert_int_equal(result.scene.grid.cell_count[0], 41);
-    assert_within(json_number_value(json_array_get(max, 0)), 20.5, 1e-12);
+    ASSERT_WITHIN(json_number_value(json_array_get(max, 0)), 20.5, 1e-12);
     fixture_result_release(&result);
     scene = fixture_scene(BASE_FLUID); /* 0.3 / 0.01 is not quite 30 */
     result = read_valid(scene);
