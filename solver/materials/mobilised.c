@@ -3,6 +3,7 @@
 
 #include "materials/cone.h"
 #include "math/angle.h"
+#include "math/elementary.h"
 
 static const double angle_limit_deg = 89.0;
 
@@ -29,9 +30,9 @@ static bool is_critical_state(const double *values)
     return !isnan(values[MOBILISED_A0]) && !isnan(values[MOBILISED_A5]);
 }
 
-static double tangent_deg(double angle)
+TALUS_INLINE double tangent_deg(double angle)
 {
-    return tan(angle_radians(minimum(maximum(angle, 0.0), angle_limit_deg)));
+    return elementary_tangent_deg(minimum(maximum(angle, 0.0), angle_limit_deg));
 }
 
 size_t mobilised_check(const double *values, struct material_issue *items, size_t capacity)
@@ -137,15 +138,20 @@ void mobilised_angles_at_start(const struct mobilised *mobilised,
     }
     if (m.constant)
         return;
+#pragma omp simd
     for (size_t index = 0; index < count; index++) {
         double lambda = m.strain_scale * measure[begin + index];
         double exponent = m.pressure_decay * invariant[begin + index] - m.strain_decay * lambda;
-        angles->tangent[index] =
-            tangent_deg(m.residual + (m.hardening * lambda - m.initial_drop) * exp(exponent));
-        if (m.critical_state) {
-            double critical = m.residual - m.initial_drop * exp(-m.critical_decay * lambda);
-            angles->flow_tangent[index] = angles->tangent[index] - tangent_deg(critical);
-        }
+        double peak = m.hardening * lambda - m.initial_drop;
+        angles->tangent[index] = tangent_deg(m.residual + peak * elementary_exp(exponent));
+    }
+    if (!m.critical_state)
+        return;
+#pragma omp simd
+    for (size_t index = 0; index < count; index++) {
+        double lambda = m.strain_scale * measure[begin + index];
+        double drop = m.initial_drop * elementary_exp(-m.critical_decay * lambda);
+        angles->flow_tangent[index] = angles->tangent[index] - tangent_deg(m.residual - drop);
     }
 }
 
