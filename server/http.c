@@ -108,11 +108,13 @@ static enum MHD_Result body_take(struct request *request, const char *data, size
         return MHD_NO;
     if (request->reply.response != NULL)
         return MHD_YES;
-    if ((double)request->body_length > limit)
+    if ((double)request->body_length > limit) {
+        text_release(&request->body);
         reply_problem(&request->reply, MHD_HTTP_CONTENT_TOO_LARGE, "too_large", request->raw, NULL,
                       "a body has at most %.0f bytes", limit);
-    else
+    } else {
         text_add(&request->body, data, length);
+    }
     return request->body.failed ? MHD_NO : MHD_YES;
 }
 

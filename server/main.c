@@ -7,9 +7,20 @@
 #include <signal.h>
 #include <stdio.h>
 #include <string.h>
+#include <sys/resource.h>
 #include <unistd.h>
 
 enum { EXIT_USAGE = 2 };
+
+/* Readers and jobs need descriptors; the usual soft limit is for programs that use select(). */
+static void descriptors_raise(void)
+{
+    struct rlimit limit;
+    if (getrlimit(RLIMIT_NOFILE, &limit) == 0 && limit.rlim_cur < limit.rlim_max) {
+        limit.rlim_cur = limit.rlim_max;
+        (void)setrlimit(RLIMIT_NOFILE, &limit);
+    }
+}
 
 /* Serves until a signal asks to stop. */
 static enum talus_status serve(const struct config *config, struct talus_error *error)
@@ -24,6 +35,7 @@ static enum talus_status serve(const struct config *config, struct talus_error *
     (void)sigaddset(&signals, SIGHUP);
     (void)pthread_sigmask(SIG_BLOCK, &signals, NULL);
     (void)signal(SIGPIPE, SIG_IGN);
+    descriptors_raise();
     enum talus_status status = address_listen(config->listen, &listener, address, error);
     if (status == TALUS_OK)
         status = service_start(&service, config, listener, error);

@@ -143,15 +143,32 @@ static void attempt_check(struct supervisor *supervisor, struct attempt *attempt
         attempt_stop(supervisor, attempt, now);
 }
 
-/* Records the end of an attempt whose lock we got. False: the store refused; try again later. */
-static bool attempt_record(struct supervisor *supervisor, struct attempt *attempt)
+/* Follows the event file; the progress is shared with those who look at the job. */
+static void attempt_follow(struct supervisor *supervisor, struct attempt *attempt)
 {
-    struct job_outcome outcome;
+    (void)pthread_mutex_lock(&supervisor->mutex);
+    attempt_read(attempt);
+    (void)pthread_mutex_unlock(&supervisor->mutex);
+}
+
+static const struct job_outcome folder_gone = {
+    .end = JOB_END_FAILED,
+    .reason = "lost",
+    .detail = "the job's folder is gone",
+    .exit_code = -1,
+    .signal_number = -1,
+};
+
+/* Records the end of an attempt whose lock we got. False: the store refused; try again later. */
+static bool attempt_record(struct supervisor *supervisor, struct attempt *attempt, bool gone)
+{
+    struct job_outcome outcome = folder_gone;
     struct talus_error error = {0};
     json_t *receipt = NULL;
     char detail[512];
-    attempt_read(attempt);
-    attempt_outcome(attempt, &outcome, &receipt, detail);
+    attempt_follow(supervisor, attempt);
+    if (!gone)
+        attempt_outcome(attempt, &outcome, &receipt, detail);
     enum talus_status status = jobs_finish(supervisor->service, attempt->id, &outcome, &error);
     json_decref(receipt);
     if (status != TALUS_OK)
@@ -174,16 +191,16 @@ static void attempt_unlink(struct supervisor *supervisor, struct attempt *attemp
 /* One look at an attempt. */
 static void attempt_service(struct supervisor *supervisor, struct attempt *attempt, double now)
 {
-    (void)pthread_mutex_lock(&supervisor->mutex);
-    attempt_read(attempt);
-    (void)pthread_mutex_unlock(&supervisor->mutex);
+    attempt_follow(supervisor, attempt);
     if (attempt->pid > 0 && !attempt->ended)
         attempt->ended = executor_ended(attempt->pid, &attempt->wait_status);
     if (attempt->pid == 0 || attempt->ended) {
         int lock = event_log_lock(attempt->folder);
-        if (lock >= 0) {
-            bool recorded = attempt_record(supervisor, attempt);
-            (void)close(lock);
+        bool gone = lock < 0 && errno == ENOENT;
+        if (lock >= 0 || gone) {
+            bool recorded = attempt_record(supervisor, attempt, gone);
+            if (lock >= 0)
+                (void)close(lock);
             if (recorded)
                 attempt_unlink(supervisor, attempt);
             return;
@@ -208,7 +225,8 @@ static bool candidate_add(const struct job *job, void *context)
     return candidates->count < CANDIDATES_MAX;
 }
 
-/* Begins an attempt under its lock, which the worker inherits. */
+/* Begins an attempt under its lock, which the worker inherits; without a lock (the folder is gone)
+ * it ends at once. */
 static enum talus_status attempt_begin(struct supervisor *supervisor, const char *id,
                                        const char *folder, int lock, struct talus_error *error)
 {
@@ -230,15 +248,15 @@ static enum talus_status attempt_begin(struct supervisor *supervisor, const char
         .memory_limit = job.memory_limit,
         .disk_limit = job.disk_limit,
     };
-    status = executor_start(&task, &pid, error);
-    if (status != TALUS_OK) {
-        const struct job_outcome outcome = {.end = JOB_END_CRASHED,
+    const struct job_outcome not_started = {.end = JOB_END_CRASHED,
                                             .reason = "crashed",
                                             .detail = error->text,
                                             .exit_code = -1,
                                             .signal_number = -1};
+    status = lock < 0 ? TALUS_IO : executor_start(&task, &pid, error);
+    if (status != TALUS_OK) {
         struct talus_error second = {0};
-        if (jobs_finish(service, id, &outcome, &second) != TALUS_OK)
+        if (jobs_finish(service, id, lock < 0 ? &folder_gone : &not_started, &second) != TALUS_OK)
             (void)fprintf(stderr, "talusd: job %s: %s\n", id, second.text);
     } else if (!attempt_add(supervisor, &job, pid)) {
         executor_signal(pid, SIGKILL);
@@ -253,13 +271,14 @@ static bool job_start(struct supervisor *supervisor, const char *id)
     struct talus_error error = {0};
     char *folder = jobs_folder(supervisor->service, id);
     int lock = folder == NULL ? -1 : event_log_lock(folder);
-    bool good = lock >= 0;
+    bool good = lock >= 0 || errno == ENOENT;
     if (good) {
         enum talus_status status = attempt_begin(supervisor, id, folder, lock, &error);
-        good = status == TALUS_OK || strcmp(error.code, "state") == 0 ||
+        good = status == TALUS_OK || lock < 0 || strcmp(error.code, "state") == 0 ||
                strcmp(error.code, "not_found") == 0;
-        (void)close(lock);
     }
+    if (lock >= 0)
+        (void)close(lock);
     if (error.status != TALUS_OK && !good)
         (void)fprintf(stderr, "talusd: job %s: %s\n", id, error.text);
     free(folder);

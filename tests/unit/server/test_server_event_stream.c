@@ -71,7 +71,7 @@ static void test_the_whole_story(void **state)
 {
     static const char *const expected[] = {
         "event: state\ndata: {\"event\":\"state\",\"attempt\":0",
-        "event: reaction\ndata: "
+        "event: reaction\n",
         "{\"name\":\"reaction.wall.force.x\",\"time\":[0,1],\"value\":[0,10]}",
         "event: energy\ndata: {\"name\":\"energy.kinetic\",\"time\":[0,1],\"value\":[0,100]}",
         "event: probe\ndata: {\"name\":\"probe.runout\",\"time\":[0,1],\"value\":[0,1000]}",
