@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 #include "job.h"
 
+#include "json_text.h"
+
 #include <stdlib.h>
 #include <string.h>
 
@@ -57,7 +59,7 @@ enum talus_status job_text_set(char **text, const char *value, struct talus_erro
 
 enum talus_status job_json_set(char **text, const json_t *value, struct talus_error *error)
 {
-    char *dump = value == NULL ? NULL : json_dumps(value, JSON_COMPACT);
+    char *dump = value == NULL ? NULL : json_text(value, 0);
     if (value != NULL && dump == NULL)
         return talus_error_set(error, TALUS_MEMORY, "memory", "", "out of memory");
     free(*text);

@@ -5,6 +5,7 @@
 #include "event_log.h"
 #include "events.h"
 #include "folder.h"
+#include "json_text.h"
 #include "supervisor.h"
 #include "waits.h"
 
@@ -56,7 +57,7 @@ static enum talus_status folder_fill(const char *folder, const struct job *job, 
                                                            .attempt = job->attempt,
                                                            .at = job->changed_at,
                                                            .state = "queued"});
-    char *text = json_dumps(scene, JSON_INDENT(2) | JSON_REAL_PRECISION(17));
+    char *text = json_text(scene, 2);
     enum talus_status status = text == NULL || line.failed ? out_of_memory(error) : TALUS_OK;
     if (status == TALUS_OK)
         status = folder_make(folder, error);

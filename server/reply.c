@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 #include "reply.h"
 
+#include "json_text.h"
+
 #include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -41,13 +43,9 @@ void reply_text(struct reply *reply, unsigned int status, const char *type, stru
 void reply_document(struct reply *reply, unsigned int status, const char *type, json_t *value)
 {
     struct text text = {0};
-    char *dump = value == NULL ? NULL : json_dumps(value, JSON_COMPACT);
+    json_text_add(&text, value, 0);
+    text_add_string(&text, "\n");
     json_decref(value);
-    if (dump == NULL)
-        text.failed = true;
-    else
-        text_print(&text, "%s\n", dump);
-    free(dump);
     reply_text(reply, status, type, &text);
 }
 

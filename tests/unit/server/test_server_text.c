@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Texts, times and checksums. */
 #include "checksum.h"
+#include "json_text.h"
 #include "moment.h"
 #include "server_fixture.h"
 #include "text.h"
@@ -63,6 +64,30 @@ static void test_moments(void **state)
     assert_string_equal(text, "2026-11-22T08:13:24.250Z");
 }
 
+static void expect_json(const char *in, unsigned int indent, const char *expected)
+{
+    json_t *value = json_loads(in, JSON_DECODE_ANY, NULL);
+    char *text = json_text(value, indent);
+    assert_non_null(text);
+    assert_string_equal(text, expected);
+    json_t *again = json_loads(text, JSON_DECODE_ANY, NULL);
+    assert_true(json_equal(value, again));
+    json_decref(again);
+    json_decref(value);
+    free(text);
+}
+
+static void test_json(void **state)
+{
+    (void)state;
+    expect_json("{\"a\":[0.1,1,-2],\"b\":{},\"c\":[],\"d\":null}", 0,
+                "{\"a\":[0.1,1,-2],\"b\":{},\"c\":[],\"d\":null}");
+    expect_json("{\"a\":[0.1,1],\"b\":[{\"x\":true}]}", 2,
+                "{\n  \"a\": [0.1, 1],\n  \"b\": [\n    {\n      \"x\": true\n    }\n  ]\n}");
+    expect_json("\"\\\"\\n\\u00e9\"", 0, "\"\\\"\\n\xc3\xa9\"");
+    assert_null(json_text(NULL, 0));
+}
+
 static void expect_equal(const char *a, const char *b, bool equal)
 {
     struct talus_error error = {0};
@@ -103,7 +128,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_numbers), cmocka_unit_test(test_growth),
         cmocka_unit_test(test_moments), cmocka_unit_test(test_equal_json),
-        cmocka_unit_test(test_sha256),
+        cmocka_unit_test(test_sha256),  cmocka_unit_test(test_json),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
