@@ -69,37 +69,47 @@ static enum talus_status make_columns(struct talus_simulation *simulation,
     return TALUS_OK;
 }
 
+static void read_wishes(struct talus_simulation *made, const char *title)
+{
+    made->particle_count = (size_t)read_word(title, "particles=", 100);
+    made->delay_us = read_word(title, "delay_us=", 0);
+    made->unstable = read_word(title, "unstable=", -1);
+    made->memory = read_word(title, "memory=", -1);
+    made->warn = read_word(title, "warn=", -1);
+    made->audit = read_word(title, "audit=", 0);
+}
+
+/* NULL when memory ran out. */
+static struct talus_simulation *make_simulation(const struct talus_scene *scene,
+                                                struct talus_error *error)
+{
+    struct talus_simulation *made = calloc(1, sizeof *made);
+    if (made == NULL)
+        return NULL;
+    made->state.duration = scene->duration;
+    made->time_step = scene->solver.time_step;
+    made->gravity = 9.81;
+    read_wishes(made, scene->title);
+    made->height = malloc((made->particle_count + 1) * sizeof *made->height);
+    made->velocity = calloc(made->particle_count + 1, sizeof *made->velocity);
+    if (made->height == NULL || made->velocity == NULL ||
+        make_columns(made, scene, error) != TALUS_OK) {
+        talus_simulation_destroy(made);
+        return NULL;
+    }
+    for (size_t index = 0; index < made->particle_count; index++)
+        made->height[index] = 0.1 + 0.01 * (double)(index % 97);
+    return made;
+}
+
 enum talus_status talus_simulation_create(const struct talus_scene *scene,
                                           const struct talus_simulation_options *options,
                                           struct talus_simulation **simulation,
                                           struct talus_error *error)
 {
     (void)options;
-    struct talus_simulation *made = calloc(1, sizeof *made);
-    if (made == NULL)
-        return fail_memory(error);
-    made->state.duration = scene->duration;
-    made->time_step = scene->solver.time_step;
-    made->gravity = 9.81;
-    made->particle_count = (size_t)read_word(scene->title, "particles=", 100);
-    made->delay_us = read_word(scene->title, "delay_us=", 0);
-    made->unstable = read_word(scene->title, "unstable=", -1);
-    made->memory = read_word(scene->title, "memory=", -1);
-    made->warn = read_word(scene->title, "warn=", -1);
-    made->audit = read_word(scene->title, "audit=", 0);
-    made->height = malloc((made->particle_count + 1) * sizeof *made->height);
-    made->velocity = calloc(made->particle_count + 1, sizeof *made->velocity);
-    enum talus_status status = made->height == NULL || made->velocity == NULL
-                                   ? fail_memory(error)
-                                   : make_columns(made, scene, error);
-    if (status != TALUS_OK) {
-        talus_simulation_destroy(made);
-        return status;
-    }
-    for (size_t index = 0; index < made->particle_count; index++)
-        made->height[index] = 0.1 + 0.01 * (double)(index % 97);
-    *simulation = made;
-    return TALUS_OK;
+    *simulation = make_simulation(scene, error);
+    return *simulation == NULL ? fail_memory(error) : TALUS_OK;
 }
 
 void talus_simulation_destroy(struct talus_simulation *simulation)
@@ -326,10 +336,10 @@ enum talus_status talus_simulation_restore(const struct talus_scene *scene,
                                            struct talus_simulation **simulation,
                                            struct talus_error *error)
 {
-    struct talus_simulation *made = NULL;
-    enum talus_status status = talus_simulation_create(scene, options, &made, error);
-    if (status != TALUS_OK)
-        return status;
+    (void)options;
+    struct talus_simulation *made = make_simulation(scene, error);
+    if (made == NULL)
+        return fail_memory(error);
     size_t bytes = made->particle_count * sizeof(double);
     if (blob_count != BLOB_COUNT || strcmp(blobs[0].name, "state") != 0 ||
         blobs[0].bytes != sizeof made->state || strcmp(blobs[1].name, "height") != 0 ||

@@ -17,10 +17,8 @@
 int scratch_folder_make(void **state)
 {
     char *path = strdup("/tmp/talus-unit-XXXXXX");
-    if (path == NULL || mkdtemp(path) == NULL)
-        return -1;
     *state = path;
-    return 0;
+    return path != NULL && mkdtemp(path) != NULL ? 0 : -1;
 }
 
 /* Files of the folder; it has no folders of its own. */
