@@ -160,12 +160,46 @@ void scene_advise_features(struct scene_advice *advice)
     }
 }
 
+/* Cells across the smallest extent of any body or obstacle. */
+static double cells_across(const struct talus_scene *scene)
+{
+    double least = INFINITY;
+    for (size_t index = 0; index < scene->body_count; index++) {
+        struct seeding_shape shape;
+        seeding_shape_init(&shape, scene, &scene->bodies[index]);
+        for (size_t k = 0; k < scene->axis_count; k++)
+            least = fmin(least, (shape.max[k] - shape.min[k]) / scene->grid.cell[k]);
+    }
+    for (size_t index = 0; index < scene->boundary_count; index++) {
+        const struct talus_boundary *boundary = &scene->boundaries[index];
+        for (size_t k = 0; k < scene->axis_count && boundary->shape == TALUS_BOUNDARY_BOX; k++)
+            least =
+                fmin(least, (boundary->box_max[k] - boundary->box_min[k]) / scene->grid.cell[k]);
+    }
+    return least;
+}
+
+void scene_advise_fine_grid(struct scene_advice *advice)
+{
+    static const double enough[] = {1000.0, 150.0, 60.0}; /* by dimension */
+    const struct talus_scene *scene = advice->scene;
+    double limit = enough[scene->dimension], cells = cells_across(scene);
+    char detail[160], change[96], saves[96];
+    if (cells <= limit)
+        return;
+    (void)snprintf(detail, sizeof detail, "%.0f cells across the smallest feature", cells);
+    (void)snprintf(change, sizeof change, "cells %.2g times as large", cells / limit);
+    (void)snprintf(saves, sizeof saves, "a factor of about %.2g in wall time",
+                   pow(cells / limit, (double)scene->axis_count + 1.0));
+    scene_advise(advice, "/grid/cell", "fine_grid", detail, change, saves);
+}
+
 json_t *scene_advice(const struct talus_scene *scene)
 {
     static void (*const advisers[])(struct scene_advice *) = {
-        scene_advise_uniform,   scene_advise_mirror,   scene_advise_time_step,
-        scene_advise_output,    scene_advise_locking,  scene_advise_superfluous,
-        scene_advise_particles, scene_advise_features,
+        scene_advise_uniform,   scene_advise_mirror,    scene_advise_time_step,
+        scene_advise_output,    scene_advise_locking,   scene_advise_superfluous,
+        scene_advise_fine_grid, scene_advise_particles, scene_advise_features,
     };
     struct talus_estimate estimate;
     struct talus_error error = {.status = TALUS_OK};

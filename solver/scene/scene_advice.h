@@ -24,6 +24,7 @@ void scene_advise_mirror(struct scene_advice *advice);
 void scene_advise_time_step(struct scene_advice *advice);
 void scene_advise_output(struct scene_advice *advice);
 void scene_advise_superfluous(struct scene_advice *advice);
+void scene_advise_fine_grid(struct scene_advice *advice);
 /* Where it models too little. */
 void scene_advise_locking(struct scene_advice *advice);
 void scene_advise_particles(struct scene_advice *advice);

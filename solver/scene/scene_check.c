@@ -4,6 +4,7 @@
 
 #include "materials/material.h"
 #include "seeding/seeding.h"
+#include "seeding/seeding_shape.h"
 #include "talus/simulation.h"
 
 #include <stdio.h>
@@ -102,6 +103,50 @@ static void check_courant(struct scene_reader *reader)
                       "%g times the critical step needs \"allow_unstable\": true", solver->courant);
 }
 
+/* Two boxes in the same place make twice the material there. */
+static void warn_of_overlap(struct scene_reader *reader)
+{
+    enum { COMPARED_MAX = 100 }; /* pairs are compared: larger scenes are left alone */
+    const struct talus_scene *scene = reader->scene;
+    struct scene_path bodies = {.key = "bodies"};
+    for (size_t index = 1; index < scene->body_count && index < COMPARED_MAX; index++) {
+        struct scene_path here = {.parent = &bodies, .index = index};
+        struct seeding_shape shape;
+        seeding_shape_init(&shape, scene, &scene->bodies[index]);
+        double volume = seeding_shape_volume(&shape);
+        for (size_t before = 0; before < index; before++) {
+            struct seeding_shape common = shape, other;
+            if (scene->bodies[before].shape != TALUS_BODY_BOX)
+                continue;
+            seeding_shape_init(&other, scene, &scene->bodies[before]);
+            seeding_shape_cut(&common, other.min, other.max);
+            double shared = seeding_shape_volume(&common);
+            if (shared > 1e-6 * volume)
+                scene_warn(reader, &here, "overlap",
+                           "%.3g %% of '%s' lies inside '%s': there is material of both there",
+                           100.0 * shared / volume, scene->bodies[index].name,
+                           scene->bodies[before].name);
+        }
+    }
+}
+
+/* Curves are compared over their own times; what lies after the end is not. */
+static void warn_of_references(struct scene_reader *reader)
+{
+    const struct talus_scene *scene = reader->scene;
+    struct scene_path references = {.key = "references"};
+    for (size_t index = 0; index < scene->reference_count; index++) {
+        const struct talus_reference *reference = &scene->references[index];
+        struct scene_path entry = {.parent = &references, .index = index};
+        struct scene_path here = {.parent = &entry, .key = "curve"};
+        size_t last = reference->point_count;
+        if (last > 1 && reference->time[last - 1] > scene->duration)
+            scene_warn(reader, &here, "beyond_end",
+                       "the curve goes on to %g s, but the run ends at %g s",
+                       reference->time[last - 1], scene->duration);
+    }
+}
+
 /* A fixed step above the critical one, and whatever else the solver refuses. */
 static void check_estimate(struct scene_reader *reader)
 {
@@ -126,5 +171,7 @@ void scene_check(struct scene_reader *reader)
         check_initial_stress(reader, index);
         warn_of_k0(reader, index);
     }
+    warn_of_overlap(reader);
+    warn_of_references(reader);
     scene_check_boundaries(reader);
 }

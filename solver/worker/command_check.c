@@ -52,7 +52,8 @@ static void print_issues(FILE *stream, const char *prefix, const json_t *issues)
     const json_t *issue;
     json_array_foreach(issues, index, issue)
     {
-        (void)fprintf(stream, "%s%s: %s\n", prefix, text_of(issue, "pointer"),
+        const char *pointer = text_of(issue, "pointer");
+        (void)fprintf(stream, "%s%s: %s\n", prefix, *pointer != '\0' ? pointer : "scene",
                       text_of(issue, "detail"));
     }
 }

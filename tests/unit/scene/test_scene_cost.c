@@ -128,6 +128,7 @@ static void advice_comes_and_goes(void **state)
         {BASE_PLANE, "/bodies/0/particles_per_cell", "[1, 2]", "/bodies/0/particles_per_cell",
          "few_particles"},
         {BASE_PLANE, "/grid/cell", "[0.5, 2]", "/grid/cell", "coarse_grid"},
+        {BASE_PLANE, "/grid/cell", "0.01", "/grid/cell", "fine_grid"},
     };
     for (size_t index = 0; index < sizeof cases / sizeof cases[0]; index++) {
         const struct advice_case *entry = &cases[index];

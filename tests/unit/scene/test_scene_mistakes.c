@@ -215,6 +215,8 @@ static const struct mistake mistakes[] = {
      "unknown_value"},
     {BASE_SOLID, "/probes", "[{\"kind\": \"height\"}]", "/probes/0/along", "required"},
     {BASE_PLANE, "/references/0/probe", "\"run\"", NULL, "unknown_name"},
+    {BASE_PLANE, "/references/-", "{\"probe\": \"load\", \"of_job\": \"../etc\"}",
+     "/references/1/of_job", "name"},
     {BASE_PLANE, "/references/0/value", "1", "/references/0/curve", "contradiction"},
     {BASE_PLANE, "/references/0/curve", NULL, "/references/0/value", "required"},
     {BASE_PLANE, "/references/0/curve", "[[1, 2], [0, 3]]", "/references/0/curve/1", "range"},

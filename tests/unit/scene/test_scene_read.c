@@ -136,6 +136,21 @@ static void faces_have_axes_and_sizes(void **state)
     fixture_result_release(&result);
 }
 
+static void faces_in_a_plane_are_lines(void **state)
+{
+    (void)state;
+    json_t *scene = fixture_scene(BASE_PLANE);
+    fixture_change(scene, "/boundaries/-",
+                   "{\"face\": {\"min\": [0.5, 0], \"max\": [4, 0], \"normal\": [0, 1]},"
+                   " \"condition\": \"slip\"}");
+    struct fixture_result result = read_valid(scene);
+    const struct talus_boundary *face = &result.scene.boundaries[2];
+    ASSERT_WITHIN(fabs(face->axis_1[0]), 1.0, 0.0);
+    ASSERT_WITHIN(face->size[0], 3.5, 1e-12);
+    ASSERT_WITHIN(face->point[0], 2.25, 1e-12);
+    fixture_result_release(&result);
+}
+
 static void boxes_have_faces_of_their_own(void **state)
 {
     (void)state;
@@ -289,6 +304,12 @@ static void warnings_say_where(void **state)
     assert_warning("/boundaries/1/box/max", "[8.1, 6]", "/boundaries/1/box", "thin", "thinner");
     assert_warning("/bodies/0/initial_stress/geostatic/k0", "0.2",
                    "/bodies/0/initial_stress/geostatic/k0", "k0_yield", "0.333");
+    assert_warning("/references/0/curve", "[[0, 4], [3, 6]]", "/references/0/curve", "beyond_end",
+                   "3 s");
+    assert_warning("/bodies/-",
+                   "{\"material\": \"soil\", \"box\": {\"min\": [3, 0], \"max\": [7, 2]},"
+                   " \"particles_per_cell\": 2}",
+                   "/bodies/1", "overlap", "25 %");
 }
 
 static enum talus_status read_text(const char *text, struct fixture_result *result)
@@ -340,11 +361,13 @@ static void tables_and_words_agree(void **state)
 #include "shapes/shapes.def"
 #undef SHAPE
     };
-    assert_int_equal(boundary_count, sizeof conditions / sizeof conditions[0]);
-    for (size_t index = 0; index < boundary_count; index++)
+    const size_t condition_count = sizeof conditions / sizeof conditions[0];
+    assert_int_equal(boundary_count, condition_count);
+    for (size_t index = 0; index < condition_count; index++)
         assert_string_equal(boundary_table[index]->name, conditions[index]);
-    assert_int_equal(shape_count, sizeof shapes / sizeof shapes[0]);
-    for (size_t index = 0; index < shape_count; index++)
+    const size_t word_count = sizeof shapes / sizeof shapes[0];
+    assert_int_equal(shape_count, word_count);
+    for (size_t index = 0; index < word_count; index++)
         assert_string_equal(shape_table[index]->name, shapes[index]);
 }
 
@@ -354,6 +377,7 @@ int main(void)
         cmocka_unit_test(values_arrive),
         cmocka_unit_test(defaults_are_the_documented_ones),
         cmocka_unit_test(faces_have_axes_and_sizes),
+        cmocka_unit_test(faces_in_a_plane_are_lines),
         cmocka_unit_test(boxes_have_faces_of_their_own),
         cmocka_unit_test(initial_stresses_have_many_forms),
         cmocka_unit_test(grids_are_rounded_up),
