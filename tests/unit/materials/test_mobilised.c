@@ -258,6 +258,36 @@ static void test_returns(void **context)
     }
 }
 
+/* A dilation angle above the friction in force would let plastic flow under pressure give energy:
+ * it is cut to associated flow, where the work is exactly zero without cohesion. */
+static void test_dilation_is_limited_by_friction(void **context)
+{
+    (void)context;
+    const char *const models[] = {"drucker_prager_mobilised", "matsuoka_nakai"};
+    const struct setting settings[] = {{"density", 2000.0},    {"bulk_modulus", 5e6},
+                                       {"shear_modulus", 3e6}, {"friction.a0", 30.0},
+                                       {"friction.a4", 20.0},  {"dilation_angle", 25.0}};
+    for (size_t model = 0; model < LENGTH(models); model++) {
+        struct fixture fixture;
+        struct slots slots;
+        double trial[SYM3_COMPONENTS] = {-1e-2, -1.2e-2, -1.1e-2, 1e-2, 0, 0};
+        double work = 0.0;
+        fixture_init(&fixture, models[model], settings, LENGTH(settings));
+        slots_init(&slots, 8, 6);
+        for (int component = 0; component < SYM3_COMPONENTS; component++)
+            slots.batch.strain[component][0] = trial[component];
+        fixture.material->update_stress(fixture.constants, &slots.batch);
+        for (int component = 0; component < SYM3_COMPONENTS; component++)
+            work += (component < 3 ? 1.0 : 2.0) * slots.batch.stress[component][0] *
+                    (trial[component] - slots.batch.strain[component][0]);
+        double pressure = -slots_trace(slots.batch.stress, 0, 6) / 3.0;
+        assert_true(slots.batch.plastic_strain[0] > 1e-3 && pressure > 1e4);
+        assert_true(fabs(work) < 1e-12 * pressure);
+        slots_release(&slots);
+        fixture_release(&fixture);
+    }
+}
+
 /* Two principal stresses in tension make F negative as well; such a trial must come back. */
 static void test_matsuoka_nakai_sector(void **context)
 {
@@ -319,6 +349,7 @@ int main(void)
         cmocka_unit_test(test_returns),
         cmocka_unit_test(test_matsuoka_nakai_sector),
         cmocka_unit_test(test_matsuoka_nakai_corners),
+        cmocka_unit_test(test_dilation_is_limited_by_friction),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
