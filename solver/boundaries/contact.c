@@ -76,12 +76,34 @@ static void solve_dense(double matrix[NODE_FACE_MAX][NODE_FACE_MAX], double vect
     }
 }
 
-/* Splits an impulse in the span of the active normals among them: least squares of least norm. */
+/* Adds to share[] the solution of gram share = right, as far as share[] is not one yet: least
+ * squares of least norm, so that equal normals share. Its small regulariser leaves an error; run
+ * twice, the impulses of nearly parallel faces add up as well. */
+static void refine_split(const double gram[NODE_FACE_MAX][NODE_FACE_MAX],
+                         const double right[NODE_FACE_MAX], size_t count,
+                         double share[NODE_FACE_MAX])
+{
+    double matrix[NODE_FACE_MAX][NODE_FACE_MAX], residual[NODE_FACE_MAX];
+    for (size_t row = 0; row < count; row++) {
+        residual[row] = right[row];
+        for (size_t column = 0; column < count; column++) {
+            matrix[row][column] = gram[row][column];
+            residual[row] -= gram[row][column] * share[column];
+        }
+        matrix[row][row] += 1e-12;
+    }
+    solve_dense(matrix, residual, count);
+    for (size_t row = 0; row < count; row++)
+        share[row] += residual[row];
+}
+
+/* Splits an impulse in the span of the active normals among them. */
 static void split_normal(const struct wall_face *faces, const struct node_faces *node,
                          const bool active[NODE_FACE_MAX], const double impulse[3],
                          double share[NODE_FACE_MAX])
 {
     double gram[NODE_FACE_MAX][NODE_FACE_MAX], right[NODE_FACE_MAX];
+    double solution[NODE_FACE_MAX] = {0};
     size_t used[NODE_FACE_MAX], count = 0;
     bool orthogonal = true;
     memset(share, 0, NODE_FACE_MAX * sizeof *share);
@@ -96,12 +118,11 @@ static void split_normal(const struct wall_face *faces, const struct node_faces 
             gram[row][column] = dot(normal, faces[node->face[used[column]]].normal);
             orthogonal = orthogonal && (row == column || gram[row][column] == 0);
         }
-        gram[row][row] += 1e-12; /* equal normals share */
     }
-    if (!orthogonal)
-        solve_dense(gram, right, count);
+    for (int pass = 0; pass < 2 && !orthogonal; pass++)
+        refine_split((const double(*)[NODE_FACE_MAX])gram, right, count, solution);
     for (size_t row = 0; row < count; row++)
-        share[used[row]] = right[row];
+        share[used[row]] = orthogonal ? right[row] : solution[row];
 }
 
 /* Finds the faces in contact, and the normal impulses for a given free increment. `reach` is the
