@@ -3,6 +3,7 @@
 #include "explicit/kinematics.h"
 #include "explicit/material_stage.h"
 #include "explicit/run.h"
+#include "math/sticky.h"
 
 #include <math.h>
 #include <string.h>
@@ -91,12 +92,12 @@ static double move(const struct run *run, const struct particle_block *block,
                 lanes_load(position + i) + scale * lanes_load(scratch->velocity[axis] + i);
             lanes_store(position + i, x);
             const lanes size = lanes_absolute(x);
-            largest = lanes_select(size <= largest, largest, size);
+            largest = lanes_sticky_maximum(largest, size);
         }
     }
     double result = 0;
     for (size_t lane = 0; lane < LANE_COUNT; lane++)
-        result = largest[lane] <= result ? result : largest[lane];
+        result = sticky_maximum(result, largest[lane]);
     return result;
 }
 
@@ -152,11 +153,11 @@ static double largest_speed_squared(const struct run *run, const struct particle
                 lanes_load(particle_values(&run->grid.layout, block, PARTICLE_VELOCITY, axis) + i);
             square += v * v;
         }
-        largest = lanes_select(square <= largest, largest, square);
+        largest = lanes_sticky_maximum(largest, square);
     }
     double result = 0;
     for (size_t lane = 0; lane < LANE_COUNT; lane++)
-        result = largest[lane] <= result ? result : largest[lane];
+        result = sticky_maximum(result, largest[lane]);
     return result;
 }
 
@@ -179,7 +180,9 @@ void run_advance_block(struct run *run, struct block_scratch *scratch, uint32_t 
     }
     const double time_step = still ? 0.0 : run->time_step;
     const double jacobian = kinematics_advance(run, block, scratch, time_step);
-    sums->least_jacobian = jacobian >= sums->least_jacobian ? sums->least_jacobian : jacobian;
+    if (!(jacobian > 0) && sums->bad_particle == PARTICLE_NONE)
+        sums->bad_particle = block->id[scratch->bad_slot];
+    sums->least_jacobian = sticky_minimum(sums->least_jacobian, jacobian);
     material_stage_run(run, block, scratch, time_step);
     kinematics_store(run, block, scratch);
     force_stresses(run, block, scratch, count, sums);
@@ -190,6 +193,6 @@ void run_advance_block(struct run *run, struct block_scratch *scratch, uint32_t 
     if (!still && (block->eliminates || !(reach <= 0.5)))
         collect_crossers(run, block, block_index, scratch, count, tile);
     const double speed = largest_speed_squared(run, block, count);
-    sums->speed_squared = speed <= sums->speed_squared ? sums->speed_squared : speed;
+    sums->speed_squared = sticky_maximum(sums->speed_squared, speed);
     run->kernels->scatter(&context, block, scratch, last);
 }

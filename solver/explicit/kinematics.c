@@ -7,6 +7,7 @@
 
 #include "math/log1p_series.h"
 #include "math/log_strain.h"
+#include "math/sticky.h"
 
 #include <assert.h>
 #include <string.h>
@@ -179,11 +180,16 @@ static double advance_volume(struct run *run, struct particle_block *block,
     double *restrict volume = particle_values(&run->grid.layout, block, PARTICLE_VOLUME, 0);
     double least = 0;
     for (size_t i = 0; i < count; i++) {
-        /* NAN must not hide here: fmin would drop it. */
-        least = increment[i] >= least ? least : increment[i];
+        least = sticky_minimum(least, increment[i]);
         volume[i] = run->finite_strain ? volume[i] * (1.0 + increment[i]) : volume[i];
         const double v0 = scratch->reference_volume[i];
         scratch->volume_ratio[i] = run->finite_strain && v0 > 0 ? volume[i] / v0 : 1.0;
+    }
+    for (size_t i = 0; !(1.0 + least > 0) && i < count; i++) {
+        if (!(1.0 + increment[i] > 0)) {
+            scratch->bad_slot = i;
+            break;
+        }
     }
     return 1.0 + least;
 }

@@ -69,6 +69,7 @@ struct peak_window {
 struct tile_sums {
     double speed_squared;                  /* largest [m^2/s^2] */
     double least_jacobian;                 /* smallest det of an incremental deformation gradient */
+    uint32_t bad_particle;                 /* id of one where that is not positive, or NONE */
     double plastic_energy, viscous_energy; /* dissipated in the step [J] */
     double kinetic, strain, potential;     /* filled by run_measure_energy [J] */
 };

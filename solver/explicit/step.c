@@ -2,6 +2,7 @@
 /* One time step: the passes over tiles and nodes in their order. */
 #include "explicit/run.h"
 #include "health/health.h"
+#include "math/sticky.h"
 
 #include <math.h>
 #include <omp.h>
@@ -62,6 +63,7 @@ static void advance_tile(struct run *run, size_t index, struct block_scratch *sc
     struct tile_sums *sums = &run->tile_sums[index];
     memset(sums, 0, sizeof *sums);
     sums->least_jacobian = 1.0;
+    sums->bad_particle = PARTICLE_NONE;
     for (size_t entry = tile->begin; entry < tile->end; entry++)
         run_advance_block(run, scratch, run->grid.tile_blocks[entry], tile, sums, still);
 }
@@ -93,13 +95,13 @@ static void second_pass(struct run *run, bool still)
 
 static struct tile_sums sum_tiles(const struct run *run)
 {
-    struct tile_sums total = {.least_jacobian = 1.0};
+    struct tile_sums total = {.least_jacobian = 1.0, .bad_particle = PARTICLE_NONE};
     for (size_t index = 0; index < run->grid.tile_count; index++) {
         const struct tile_sums *sums = &run->tile_sums[index];
-        total.speed_squared =
-            sums->speed_squared <= total.speed_squared ? total.speed_squared : sums->speed_squared;
-        total.least_jacobian = sums->least_jacobian >= total.least_jacobian ? total.least_jacobian
-                                                                            : sums->least_jacobian;
+        total.speed_squared = sticky_maximum(total.speed_squared, sums->speed_squared);
+        total.least_jacobian = sticky_minimum(total.least_jacobian, sums->least_jacobian);
+        if (total.bad_particle == PARTICLE_NONE)
+            total.bad_particle = sums->bad_particle;
         total.plastic_energy += sums->plastic_energy;
         total.viscous_energy += sums->viscous_energy;
     }

@@ -89,32 +89,28 @@ enum talus_status health_check_outside(const struct run *run, const struct parti
         name, run->time, (unsigned long long)run->step);
 }
 
-/* Finds the particle behind a bad sum, for the message. */
-static enum talus_status blame_strain(const struct run *run, double jacobian,
-                                      struct talus_error *error)
+/* Names the particle of that id, or with PARTICLE_NONE the first one whose velocity is not finite.
+ */
+static void name_bad_particle(const struct run *run, uint32_t id, char *text, size_t size)
 {
-    char name[256] = "a particle";
+    (void)snprintf(text, size, "a particle");
     for (size_t index = 0; index < run->grid.block_count; index++) {
         const struct particle_block *block = &run->grid.blocks[index];
         for (size_t slot = 0; slot < (size_t)block->row_count * LANE_COUNT; slot++) {
-            const double volume =
-                particle_values(&run->grid.layout, block, PARTICLE_VOLUME, 0)[slot];
-            const double strain =
-                particle_values(&run->grid.layout, block, PARTICLE_STRAIN, 0)[slot];
-            if (block->id[slot] == PARTICLE_NONE || (volume > 0 && isfinite(strain)))
+            bool found = id != PARTICLE_NONE && block->id[slot] == id;
+            for (uint32_t axis = 0; id == PARTICLE_NONE && axis < run->grid.domain.axis_count;
+                 axis++)
+                found = found || !isfinite(particle_values(&run->grid.layout, block,
+                                                           PARTICLE_VELOCITY, axis)[slot]);
+            if (!found || block->id[slot] == PARTICLE_NONE)
                 continue;
             double position[3];
             place_of(run, block, slot, position);
             name_particle(run, block->id[slot], block->body == NULL ? 0 : block->body[slot],
-                          position, name, sizeof name);
-            index = run->grid.block_count - 1;
-            break;
+                          position, text, size);
+            return;
         }
     }
-    return talus_error_set(
-        error, TALUS_UNSTABLE, "inverted", "",
-        "det of the deformation increment of %s is %.3g at t = %.6g s, step %llu; %s", name,
-        jacobian, run->time, (unsigned long long)run->step, advice(run));
 }
 
 static enum talus_status check_energy(struct run *run, struct talus_error *error)
@@ -133,16 +129,34 @@ static enum talus_status check_energy(struct run *run, struct talus_error *error
         growth, run->time, (unsigned long long)run->step, advice(run));
 }
 
+static enum talus_status report_inverted(const struct run *run, const struct tile_sums *sums,
+                                         struct talus_error *error)
+{
+    char name[256];
+    name_bad_particle(run, sums->bad_particle, name, sizeof name);
+    return talus_error_set(
+        error, TALUS_UNSTABLE, "inverted", "",
+        "det of the deformation increment of %s is %.3g at t = %.6g s, step %llu; %s", name,
+        sums->least_jacobian, run->time, (unsigned long long)run->step, advice(run));
+}
+
+static enum talus_status report_speed(const struct run *run, struct talus_error *error)
+{
+    char name[256];
+    name_bad_particle(run, PARTICLE_NONE, name, sizeof name);
+    return talus_error_set(error, TALUS_UNSTABLE, "non_finite", "",
+                           "the velocity of %s is not a number at t = %.6g s, step %llu; %s", name,
+                           run->time, (unsigned long long)run->step, advice(run));
+}
+
 enum talus_status health_check_step(struct run *run, const struct tile_sums *sums,
                                     struct talus_error *error)
 {
     if (!(sums->least_jacobian > 0))
-        return blame_strain(run, sums->least_jacobian, error);
+        return report_inverted(run, sums, error);
     const double speed = sqrt(sums->speed_squared);
     if (!isfinite(speed))
-        return talus_error_set(error, TALUS_UNSTABLE, "non_finite", "",
-                               "a particle velocity is not a number at t = %.6g s, step %llu; %s",
-                               run->time, (unsigned long long)run->step, advice(run));
+        return report_speed(run, error);
     const bool jumped = speed > SPEED_JUMP * run->checked_speed && run->checked_speed > 0;
     run->largest_speed = speed;
     if (run->step > 1 && !jumped && run->step % ENERGY_CHECK_INTERVAL != 0)

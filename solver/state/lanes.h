@@ -44,9 +44,10 @@ static inline lanes lanes_absolute(lanes value)
     return (lanes)((lane_mask)value & INT64_MAX);
 }
 
-static inline lanes lanes_maximum(lanes a, lanes b)
+/* The larger one; a lane that is not a number stays so, whichever side it comes from. */
+static inline lanes lanes_sticky_maximum(lanes a, lanes b)
 {
-    return lanes_select(a > b, a, b);
+    return lanes_select((a >= b) | (a != a), a, b);
 }
 
 /* (a0 a1 a2 a3), b -> (a1 a2 a3 b0): the values at the upper x faces of the cells. */

@@ -10,6 +10,7 @@ enum { SCRATCH_HISTORY_MAX = 16 };
 
 struct block_scratch {
     size_t capacity; /* slots */
+    size_t bad_slot; /* where the last block had a det f <= 0, or NAN; kinematics sets it then */
     void *memory;    /* owned; every array below lies in it, aligned to 64 bytes */
     /* gather writes */
     double *gradient[9]; /* L_ab = dv_a/dx_b at 3 a + b [1/s] */
