@@ -4,6 +4,7 @@
 #include "subcommand.h"
 
 #include <math.h>
+#include <stdbool.h>
 #include <string.h>
 
 const char *json_text(const json_t *object, const char *key)
@@ -127,13 +128,24 @@ void job_print_advice(FILE *stream, const json_t *job)
     print_items(stream, "advice", json_object_get(job, "advice"));
 }
 
+/* Components of peaks, and forces on faces that nothing touched, fill a page. */
+static bool is_worth_a_line(const json_t *metrics, const char *key)
+{
+    char peak[192];
+    const char *end = strstr(key, ".peak");
+    if (strncmp(key, "reaction.", 9) != 0 || end == NULL)
+        return true;
+    (void)snprintf(peak, sizeof peak, "%.*s.peak", (int)(end - key), key);
+    return end[5] != '.' && json_number_value(json_object_get(metrics, peak)) > 0.0;
+}
+
 static void print_metrics(FILE *stream, json_t *metrics)
 {
     const char *key;
     json_t *value;
     json_object_foreach(metrics, key, value)
     {
-        if (json_is_number(value))
+        if (json_is_number(value) && is_worth_a_line(metrics, key))
             (void)fprintf(stream, "  %-44s %.8g\n", key, json_number_value(value));
     }
 }

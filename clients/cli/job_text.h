@@ -12,7 +12,8 @@ const char *json_text(const json_t *object, const char *key);
 
 /* Everything about one job, over several lines. */
 void job_print(FILE *stream, const json_t *job);
-/* What is left to say when a job has ended: state, reason, figures. */
+/* What is left to say when a job has ended: state, reason, figures; of forces only the peaks that
+ * are not zero. */
 void job_print_result(FILE *stream, const json_t *job);
 /* Advice and warnings: what a scene models more, or less, than it needs. */
 void job_print_advice(FILE *stream, const json_t *job);
