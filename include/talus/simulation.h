@@ -128,8 +128,8 @@ talus_simulation_restore(const struct talus_scene *scene,
                          const struct talus_blob *blobs, size_t blob_count,
                          struct talus_simulation **simulation, struct talus_error *error);
 
-/* Instruction set that the solver was compiled for ("x86-64-v3", ...; static storage). Results have the
- * same bits on the same build and instruction set. */
+/* Instruction set that the solver was compiled for ("x86-64-v3", ...; static storage). Results have
+ * the same bits on the same build and instruction set. */
 const char *talus_simulation_isa(void);
 
 /* 64-bit hash of the particle state (all fields, storage order): equal states have equal hashes. */

@@ -54,7 +54,7 @@ struct wall_set {
 struct wall_shape {
     enum talus_boundary_shape kind;
     bool eliminates;
-    int body_index;         /* eliminates particles of this body only; -1: of all */
+    int body_index;   /* eliminates particles of this body only; -1: of all */
     bool source_rule; /* contact area h^2 a node */
     int axis;         /* axis-aligned plane or face: the axis of the normal; else -1 */
     int32_t line;     /* its grid line */
