@@ -5,6 +5,7 @@
 #include "scene/scene_json.h"
 
 #include "materials/material.h"
+#include "seeding/seeding.h"
 #include "talus/simulation.h"
 
 #include <math.h>
@@ -101,6 +102,22 @@ static json_t *whole(double value)
     return json_integer((json_int_t)fmin(value, 9e18));
 }
 
+/* [{"name","particles","volume","volume_factor"}], for as many bodies as anyone reads. */
+static json_t *describe_bodies(const struct talus_scene *scene)
+{
+    enum { SHOWN_MAX = 100 };
+    json_t *list = json_array();
+    for (size_t index = 0; index < scene->body_count && index < SHOWN_MAX; index++) {
+        struct seeding_report report;
+        seeding_report(scene, index, &report);
+        (void)json_array_append_new(
+            list, json_pack("{s:s, s:o, s:f, s:f}", "name", scene->bodies[index].name, "particles",
+                            whole((double)report.particle_count), "volume", report.volume,
+                            "volume_factor", report.volume_factor));
+    }
+    return list;
+}
+
 json_t *scene_forecast(const struct talus_scene *scene, int threads, struct talus_error *error)
 {
     struct talus_estimate estimate;
@@ -111,15 +128,15 @@ json_t *scene_forecast(const struct talus_scene *scene, int threads, struct talu
     double memory = (double)estimate.memory_bytes + process_bytes +
                     8.0 * frame_components(scene) * (double)estimate.particle_count;
     double wall = wall_seconds(scene, &estimate, threads, written);
-    json_t *forecast =
-        json_pack("{s:o, s:o, s:f, s:f, s:o, s:o, s:o, s:o, s:{s:f, s:f, s:f}}", "particles",
-                  whole((double)estimate.particle_count), "active_cells",
-                  whole((double)estimate.active_cell_count), "critical_time_step",
-                  estimate.critical_time_step, "time_step", estimate.time_step, "steps",
-                  whole((double)estimate.step_count), "memory_bytes", whole(memory),
-                  "bytes_per_particle", whole((double)estimate.bytes_per_particle), "disk_bytes",
-                  whole(written + checkpoint), "wall_seconds", "low", wall / rate_uncertainty,
-                  "expected", wall, "high", wall * rate_uncertainty);
+    json_t *forecast = json_pack(
+        "{s:o, s:o, s:f, s:f, s:o, s:o, s:o, s:o, s:o, s:{s:f, s:f, s:f}}", "particles",
+        whole((double)estimate.particle_count), "active_cells",
+        whole((double)estimate.active_cell_count), "critical_time_step",
+        estimate.critical_time_step, "time_step", estimate.time_step, "steps",
+        whole((double)estimate.step_count), "memory_bytes", whole(memory), "bytes_per_particle",
+        whole((double)estimate.bytes_per_particle), "disk_bytes", whole(written + checkpoint),
+        "bodies", describe_bodies(scene), "wall_seconds", "low", wall / rate_uncertainty,
+        "expected", wall, "high", wall * rate_uncertainty);
     if (forecast == NULL)
         (void)talus_error_set(error, TALUS_MEMORY, "memory", "", "out of memory");
     return forecast;

@@ -38,8 +38,8 @@ TALUS_MUST_CHECK enum talus_status scene_read_file(const char *path, struct talu
                                                    struct scene_issues *warnings);
 
 /* {"particles","active_cells","critical_time_step","time_step","steps","memory_bytes","bytes_per_particle",
- *  "disk_bytes","wall_seconds":{"low","expected","high"}}; NULL with *error set (over-critical
- * step, ...). */
+ *  "disk_bytes","bodies":[{"name","particles","volume","volume_factor"}],"wall_seconds":{"low","expected","high"}};
+ * NULL with *error set (over-critical step, ...). */
 json_t *scene_forecast(const struct talus_scene *scene, int threads, struct talus_error *error);
 /* [{"pointer","code","detail","change","saves"}]. */
 json_t *scene_advice(const struct talus_scene *scene);

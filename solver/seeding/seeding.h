@@ -32,16 +32,25 @@ enum { SEEDING_PARTICLE_MAX = 200000000 };
 
 /* Checks one body without allocating: empty shape, no particles, volume factor, particle limit,
  * material outside the grid or inside a box obstacle. Errors as in seeding_create. A body whose
- * lattice has more than 2^20 rows is not counted out: its volume factor is left to
- * seeding_create. */
+ * lattice has more than 2^20 rows (shared by all bodies) is not counted out: its volume factor is
+ * left to seeding_create. */
 TALUS_MUST_CHECK enum talus_status seeding_check(const struct talus_scene *scene, size_t body_index,
                                                  struct talus_error *error);
 
 /* Without allocating particles, in microseconds to milliseconds: how many particles the bodies get
- * (exact for boxes and up to 2^16 lattice rows a body, otherwise body volume over lattice cell
+ * (exact for boxes and up to 2^16 lattice rows, otherwise body volume over lattice cell
  * volume) and how many cells their bounding boxes touch (exact for boxes; cells that bodies share
  * count twice). Never overflows: saturates at UINT64_MAX. */
 void seeding_count(const struct talus_scene *scene, uint64_t *particle_count, uint64_t *cell_count);
+
+/* What one body gets, without allocating its particles. */
+struct seeding_report {
+    uint64_t particle_count; /* as in seeding_count */
+    double volume;           /* as seeding_body_volume */
+    double volume_factor;    /* [-] as in struct particle_seed */
+};
+void seeding_report(const struct talus_scene *scene, size_t body_index,
+                    struct seeding_report *report);
 
 /* Volume of a body's shape after clipping [m^3, m^2 x 1 m, m x 1 m^2]. */
 double seeding_body_volume(const struct talus_scene *scene, const struct talus_body *body);

@@ -18,15 +18,21 @@ static uint64_t add_saturated(uint64_t a, uint64_t b)
     return a > UINT64_MAX - b ? UINT64_MAX : a + b;
 }
 
-static uint64_t count_particles(const struct seeding_lattice *lattice)
+/* Lattice rows that may be counted out per body: a fraction of a second for all bodies. */
+static double row_limit(const struct talus_scene *scene)
 {
-    const double row_max = 65536.0;
+    return fmax(1024.0, 1048576.0 / (double)scene->body_count);
+}
+
+static uint64_t count_particles(const struct talus_scene *scene,
+                                const struct seeding_lattice *lattice)
+{
     double points = seeding_lattice_point_count(lattice);
     if (seeding_shape_is_empty(&lattice->shape))
         return 0;
     if (lattice->shape.body->shape == TALUS_BODY_BOX || points > count_limit)
         return saturate(points);
-    if (lattice->count[1] * lattice->count[2] <= row_max)
+    if (lattice->count[1] * lattice->count[2] <= row_limit(scene) / 16.0)
         return seeding_lattice_kept(lattice);
     double cell = 1.0;
     for (size_t k = 0; k < lattice->shape.axis_count; k++)
@@ -58,9 +64,20 @@ void seeding_count(const struct talus_scene *scene, uint64_t *particle_count, ui
     for (size_t index = 0; index < scene->body_count; index++) {
         struct seeding_lattice lattice;
         seeding_lattice_init(&lattice, scene, &scene->bodies[index]);
-        *particle_count = add_saturated(*particle_count, count_particles(&lattice));
+        *particle_count = add_saturated(*particle_count, count_particles(scene, &lattice));
         *cell_count = add_saturated(*cell_count, count_cells(scene, &lattice.shape));
     }
+}
+
+void seeding_report(const struct talus_scene *scene, size_t body_index,
+                    struct seeding_report *report)
+{
+    struct seeding_lattice lattice;
+    seeding_lattice_init(&lattice, scene, &scene->bodies[body_index]);
+    report->particle_count = count_particles(scene, &lattice);
+    report->volume = seeding_shape_volume(&lattice.shape);
+    report->volume_factor =
+        report->particle_count > 0 ? seeding_lattice_factor(&lattice, report->particle_count) : 1.0;
 }
 
 double seeding_body_volume(const struct talus_scene *scene, const struct talus_body *body)
@@ -118,7 +135,6 @@ static enum talus_status check_obstacles(const struct talus_scene *scene, size_t
 static enum talus_status check_lattice(const struct talus_scene *scene, size_t body_index,
                                        struct talus_error *error)
 {
-    const double row_max = 1048576.0;
     const struct talus_body *body = &scene->bodies[body_index];
     struct seeding_lattice lattice;
     char pointer[64];
@@ -129,7 +145,7 @@ static enum talus_status check_lattice(const struct talus_scene *scene, size_t b
         return talus_error_set(error, TALUS_INVALID, "range", pointer,
                                "body '%s' asks for about %.3g particles; %d are allowed",
                                body->name, points, SEEDING_PARTICLE_MAX);
-    if (body->shape == TALUS_BODY_BOX || lattice.count[1] * lattice.count[2] > row_max)
+    if (body->shape == TALUS_BODY_BOX || lattice.count[1] * lattice.count[2] > row_limit(scene))
         return TALUS_OK;
     uint64_t kept = seeding_lattice_kept(&lattice);
     if (kept == 0)

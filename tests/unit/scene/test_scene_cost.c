@@ -62,6 +62,22 @@ static void the_forecast_counts(void **state)
     fixture_result_release(&result);
 }
 
+static void bodies_are_reported(void **state)
+{
+    (void)state;
+    struct fixture_result result = read_valid(fixture_scene(BASE_SOLID));
+    json_t *answer = forecast(&result.scene, 1);
+    const json_t *body = json_array_get(json_object_get(answer, "bodies"), 0);
+    const double exact = 4.0 / 3.0 * 3.14159265358979323846;
+    assert_string_equal(json_string_value(json_object_get(body, "name")), "body_0");
+    assert_true(fabs(number(body, "volume") - exact) < 1e-12);
+    double represented = number(body, "particles") * 0.25 * 0.25 * 0.25;
+    assert_true(fabs(number(body, "volume_factor") * represented - exact) < 1e-9);
+    assert_true(number(body, "particles") == number(answer, "particles"));
+    json_decref(answer);
+    fixture_result_release(&result);
+}
+
 static void more_costs_more(void **state)
 {
     (void)state;
@@ -211,6 +227,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(the_forecast_counts),
+        cmocka_unit_test(bodies_are_reported),
         cmocka_unit_test(more_costs_more),
         cmocka_unit_test(advice_comes_and_goes),
         cmocka_unit_test(uniform_scenes_are_seen),
