@@ -53,7 +53,9 @@ static void add_audit(struct talus_simulation *simulation)
         gap += difference * difference;
         start += audit->initial_momentum[axis] * audit->initial_momentum[axis];
     }
-    const double scale = audit->exchanged + sqrt(start);
+    /* What moves without a net momentum, a body that spins, has a scale of its own: sqrt(2 K m). */
+    const double scale =
+        audit->exchanged + sqrt(start) + sqrt(2 * run->energy.kinetic * audit->initial_mass);
     const double turnover = run_energy_turnover(run), loss = run_numerical_loss(run);
     add_metric(simulation, "", "mass_error",
                fabs(mass + audit->eliminated_mass - audit->initial_mass) / audit->initial_mass);

@@ -53,13 +53,13 @@ def scene(title, coefficient, duration, velocity=0.0, order=(0, 1), damping=0.0,
 
 def check_stick(verification):
     """A friction rule that looks at the velocity before the step would creep by a dt / 2."""
-    ramped = scene("block that sticks", 0.9, 1.0, damping=0.5)
+    ramped = scene("block that sticks", 0.9, 3.0, damping=0.2)
     ramped["solver"]["stabilise"]["force_ramp"] = 0.3
     ramped["bodies"][0].pop("initial_stress")
     run = verification.run(ramped)
     position = run.probe("centre.x")
-    late = [x for t, x in zip(run.time, position) if t >= 0.7]
-    verification.below("sticks: drift of the centre over the last 0.3 s [m]",
+    late = [x for t, x in zip(run.time, position) if t >= 2.5]
+    verification.below("sticks: drift of the centre over the last 0.5 s [m]",
                        max(late) - min(late), 1e-12)
     verification.below("sticks: elastic displacement of the centre [m], below rho g h^2 / G",
                        abs(position[-1] - position[0]), 2000 * G * HEIGHT**2 / 4e6)
@@ -123,7 +123,7 @@ def oblique_scene(coefficient, duration, velocity, spacing):
         "grid": {"cell": CELL, "min": [0, 0], "max": [3, 3]},
         "solver": {"time_step": 5e-4, "stabilise": {"viscous_damping": 0.5}},
         "materials": {"stone": {"model": "linear_elastic", "density": 2000,
-                                "young_modulus": 1e7, "poisson_ratio": 0.25}},
+                                "young_modulus": 1e6, "poisson_ratio": 0.25}},
         "bodies": particle_bodies(points, [spacing] * 2, "stone",
                                   lambda _: [velocity * c for c in tangent]),
         "gravity": [0, -G],
