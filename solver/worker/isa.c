@@ -20,6 +20,14 @@ static bool processor_has_v3(void)
 #endif
 }
 
+/* Threads that wait for each other spin for some 50 us and then sleep: long enough for the passes
+ * of a step, and they do not burn the cores that other jobs need (libgomp's default is some ms).
+ * Read by libgomp when a program starts. */
+static bool spin_briefly(void)
+{
+    return setenv("GOMP_SPINCOUNT", "20000", 0) == 0;
+}
+
 void isa_switch(char **arguments)
 {
     const char *forced = getenv("TALUS_ISA");
@@ -33,6 +41,6 @@ void isa_switch(char **arguments)
         return;
     path[length] = '\0';
     (void)snprintf(better, sizeof better, "%s-%s", path, wanted);
-    if (access(better, X_OK) == 0)
+    if (access(better, X_OK) == 0 && spin_briefly())
         (void)execv(better, arguments);
 }
