@@ -64,6 +64,31 @@ static enum talus_status refuse_results(const struct job_run *run, struct talus_
     return TALUS_OK;
 }
 
+static bool is_same_file(const char *one, const char *other)
+{
+    struct stat first, second;
+    return stat(one, &first) == 0 && stat(other, &second) == 0 && first.st_dev == second.st_dev &&
+           first.st_ino == second.st_ino;
+}
+
+/* Going on with another scene than the folder's would destroy its results. */
+static enum talus_status refuse_other_scene(const struct job_run *run, struct talus_error *error)
+{
+    char path[FILE_PATH_SIZE], hash[65];
+    enum talus_status status = file_path(path, run->options->folder, PROTOCOL_SCENE_FILE, error);
+    if (status != TALUS_OK || run->effective == NULL)
+        return status;
+    json_t *stored = json_load_file(path, JSON_REJECT_DUPLICATES, NULL);
+    if (stored == NULL)
+        return TALUS_OK;
+    scene_hash(stored, hash);
+    json_decref(stored);
+    if (strcmp(hash, run->scene_hash) != 0 && !is_same_file(path, run->options->scene_path))
+        return talus_error_set(error, TALUS_INVALID, "scene", "", "%s belongs to another scene",
+                               run->options->folder);
+    return TALUS_OK;
+}
+
 /* The folder is ours from here on, with its events and log. */
 static enum talus_status enter_folder(struct job_run *run, struct talus_error *error)
 {
@@ -73,6 +98,8 @@ static enum talus_status enter_folder(struct job_run *run, struct talus_error *e
         status = job_lock_take(&run->lock, options->folder, error);
     if (status == TALUS_OK && !options->resume)
         status = refuse_results(run, error);
+    if (status == TALUS_OK && options->resume)
+        status = refuse_other_scene(run, error);
     if (status == TALUS_OK)
         status = job_log_open(&run->log, options->folder, options->quiet, error);
     if (status == TALUS_OK)
@@ -116,13 +143,6 @@ static enum talus_status prepare_files(const struct job_run *run, struct talus_e
     if (status == TALUS_OK)
         status = prepare_subfolder(run, "vtk", run->scene.output.vtu, error);
     return status;
-}
-
-static bool is_same_file(const char *one, const char *other)
-{
-    struct stat first, second;
-    return stat(one, &first) == 0 && stat(other, &second) == 0 && first.st_dev == second.st_dev &&
-           first.st_ino == second.st_ino;
 }
 
 /* scene.json, unless it is what the scene was read from. */

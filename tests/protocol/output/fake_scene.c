@@ -27,6 +27,8 @@ static void read_probes(struct talus_scene *scene, const json_t *list)
     for (size_t index = 0; index < scene->probe_count; index++) {
         const json_t *item = json_array_get(list, index);
         scene->probes[index].name = copy_text(item, "name");
+        if (json_object_get(item, "boundary") != NULL)
+            scene->probes[index].kind = TALUS_PROBE_REACTION;
         scene->probes[index].mean_from = number(item, "mean_from", (double)NAN);
     }
 }

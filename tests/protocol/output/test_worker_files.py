@@ -238,6 +238,23 @@ class FilesTest(worker_run.RunTest):
         self.assertIsNone(self.events("third", "finished")[0]["metrics"]["error.h"])
         self.assertIn("not a job id", self.events("third", "warning")[0]["detail"])
 
+    def test_mean_of_a_reaction_is_its_impulse(self):
+        """Rows of a reaction are means over the interval that they end."""
+        probes = [{"name": "force", "boundary": "floor", "mean_from": 0.5051}]
+        self.run_job(worker_run.scene(probes=probes), "means")
+        rows = numpy.fromfile(self.folder / "means/history.bin", "<f8").reshape(101, -1)
+        lengths = numpy.diff(numpy.maximum(rows[:, 0], 0.5051))
+        expected = (rows[1:, -1] * lengths).sum() / lengths.sum()
+        metrics = self.events("means", "finished")[0]["metrics"]
+        self.assertAlmostEqual(metrics["probe.force.mean"], expected, 12)
+
+    def test_names_need_not_be_whole_characters(self):
+        """A long name that is cut inside a character does not end the run."""
+        probes = [{"name": "x" + "ä" * 100}]
+        self.run_job(worker_run.scene(probes=probes), "names")
+        columns = json.loads((self.folder / "names/history.json").read_text())["columns"]
+        self.assertTrue(columns[-1]["name"].startswith("probe.x"))
+
     def test_double_precision(self):
         output = {"frames": {"every": 0.5, "precision": "double"}, "history": {"every": 0.1}}
         self.run_job(worker_run.scene(output=output), "double")

@@ -142,6 +142,10 @@ class ResumeTest(worker_run.RunTest):
         errors = self.run_job(other, "job", "--resume", expect=10)
         self.assertIn("another scene", errors)
         self.run_job(SCENE, "job", "--resume")
+        before = self.digest("job", "events.ndjson")
+        (self.folder / "job/checkpoint.h5").unlink()
+        self.run_job(other, "job", "--resume", expect=10)
+        self.assertEqual(before, self.digest("job", "events.ndjson"))
 
     def test_accumulators_go_on(self):
         process = self.start(SCENE)
