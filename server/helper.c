@@ -9,6 +9,7 @@
 #include <poll.h>
 #include <signal.h>
 #include <spawn.h>
+#include <stdbool.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/resource.h>
@@ -168,23 +169,15 @@ static enum talus_status answer_read(struct helper *helper, struct text *line, d
     }
 }
 
-enum talus_status helper_ask(struct helper *helper, const json_t *question, double seconds,
-                             json_t **answer, struct talus_error *error)
+/* One question to one process. */
+static enum talus_status helper_exchange(struct helper *helper, const struct text *line,
+                                         double deadline, json_t **answer,
+                                         struct talus_error *error)
 {
-    struct text line = {0}, reply = {0};
-    double deadline = moment_monotonic() + seconds;
-    char *dump = json_dumps(question, JSON_COMPACT | JSON_REAL_PRECISION(17));
-    if (dump == NULL)
-        return talus_error_set(error, TALUS_MEMORY, "memory", "", "out of memory");
-    text_print(&line, "%s\n", dump);
-    free(dump);
-    enum talus_status status =
-        line.failed ? talus_error_set(error, TALUS_MEMORY, "memory", "", "out of memory")
-                    : TALUS_OK;
-    if (status == TALUS_OK && helper->pid == 0)
-        status = helper_start(helper, error);
+    struct text reply = {0};
+    enum talus_status status = helper->pid == 0 ? helper_start(helper, error) : TALUS_OK;
     if (status == TALUS_OK)
-        status = question_write(helper, line.data, line.length, deadline, error);
+        status = question_write(helper, line->data, line->length, deadline, error);
     if (status == TALUS_OK)
         status = answer_read(helper, &reply, deadline, error);
     *answer = status == TALUS_OK ? json_loadb(reply.data, reply.length, 0, NULL) : NULL;
@@ -193,10 +186,35 @@ enum talus_status helper_ask(struct helper *helper, const json_t *question, doub
         *answer = NULL;
         status = helper_dead(error);
     }
-    text_release(&line);
     text_release(&reply);
     helper->answer_count++;
     if (status != TALUS_OK || helper->answer_count >= ANSWERS_MAX)
         helper_stop(helper);
+    return status;
+}
+
+enum talus_status helper_ask(struct helper *helper, const json_t *question, double seconds,
+                             json_t **answer, struct talus_error *error)
+{
+    struct text line = {0};
+    struct talus_error first = {0};
+    double deadline = moment_monotonic() + seconds;
+    bool used = helper->answer_count > 0;
+    char *dump = json_dumps(question, JSON_COMPACT | JSON_REAL_PRECISION(17));
+    if (dump != NULL)
+        text_print(&line, "%s\n", dump);
+    free(dump);
+    *answer = NULL;
+    if (line.data == NULL || line.failed) {
+        text_release(&line);
+        return talus_error_set(error, TALUS_MEMORY, "memory", "", "out of memory");
+    }
+    enum talus_status status = helper_exchange(helper, &line, deadline, answer, &first);
+    /* An old process may have died of something else; a new one that dies too died of this. */
+    if (status == TALUS_IO && used)
+        status = helper_exchange(helper, &line, deadline, answer, error);
+    else if (status != TALUS_OK)
+        talus_error_set(error, status, first.code, "", "%s", first.text);
+    text_release(&line);
     return status;
 }
