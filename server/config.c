@@ -7,6 +7,7 @@
 #include <getopt.h>
 #include <jansson.h>
 #include <math.h>
+#include <stddef.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
@@ -114,36 +115,58 @@ static enum talus_status arguments_read(struct config *config, int argument_coun
     return optind < argument_count ? usage_error(error, "too many arguments") : TALUS_OK;
 }
 
-/* Takes a key of the file unless the command line gave it. */
-static enum talus_status key_read(struct config *config, const char *key, const json_t *value,
-                                  struct talus_error *error)
-{
-#define CONFIG_TEXT(name, fallback, meaning)                                                       \
-    if (strcmp(key, #name) == 0) {                                                                 \
-        if (!json_is_string(value))                                                                \
-            return talus_error_set(error, TALUS_INVALID, "type", "/" #name, "%s must be a string", \
-                                   key);                                                           \
-        return config->name != NULL || text_replace(&config->name, json_string_value(value))       \
-                   ? TALUS_OK                                                                      \
-                   : out_of_memory(error);                                                         \
-    }
-#define CONFIG_NUMBER(name, fallback, low, high, meaning)                                          \
-    if (strcmp(key, #name) == 0) {                                                                 \
-        double number = json_number_value(value);                                                  \
-        if (!json_is_number(value) || number < (low) || number > (high))                           \
-            return talus_error_set(error, TALUS_INVALID, "range", "/" #name,                       \
-                                   "%s must be a number from %g to %g", key, (double)(low),        \
-                                   (double)(high));                                                \
-        if (isnan(config->name))                                                                   \
-            config->name = number;                                                                 \
-        return TALUS_OK;                                                                           \
-    }
+/* Where a key of the file goes. */
+struct config_key {
+    const char *name;
+    bool is_text;
+    size_t offset; /* in struct config */
+    double low, high;
+};
+
+static const struct config_key keys[] = {
+#define CONFIG_TEXT(key, fallback, meaning) {#key, true, offsetof(struct config, key), 0, 0},
+#define CONFIG_NUMBER(key, fallback, low, high, meaning)                                           \
+    {#key, false, offsetof(struct config, key), low, high},
 #include "config.def"
 #undef CONFIG_TEXT
 #undef CONFIG_NUMBER
-    const char *near = suggest(key, key_names);
-    return talus_error_set(error, TALUS_INVALID, "unknown_key", "", "unknown key %s%s%s", key,
-                           near == NULL ? "" : "; did you mean ", near == NULL ? "" : near);
+};
+enum { KEY_COUNT = sizeof keys / sizeof keys[0] };
+
+static enum talus_status number_read(struct config *config, const struct config_key *key,
+                                     const json_t *value, struct talus_error *error)
+{
+    double *member = (double *)((char *)config + key->offset);
+    double number = json_number_value(value);
+    if (!json_is_number(value) || number < key->low || number > key->high)
+        return talus_error_set(error, TALUS_INVALID, "range", "",
+                               "%s: a number from %g to %g is "
+                               "wanted",
+                               key->name, key->low, key->high);
+    if (isnan(*member))
+        *member = number;
+    return TALUS_OK;
+}
+
+/* Takes a key of the file unless the command line gave it. */
+static enum talus_status key_read(struct config *config, const char *name, const json_t *value,
+                                  struct talus_error *error)
+{
+    size_t index = 0;
+    while (index < KEY_COUNT && strcmp(keys[index].name, name) != 0)
+        index++;
+    if (index == KEY_COUNT) {
+        const char *near = suggest(name, key_names);
+        return talus_error_set(error, TALUS_INVALID, "unknown_key", "", "unknown key %s%s%s", name,
+                               near == NULL ? "" : "; did you mean ", near == NULL ? "" : near);
+    }
+    if (!keys[index].is_text)
+        return number_read(config, &keys[index], value, error);
+    char **member = (char **)((char *)config + keys[index].offset);
+    if (!json_is_string(value))
+        return talus_error_set(error, TALUS_INVALID, "type", "", "%s: a string is wanted", name);
+    return *member != NULL || text_replace(member, json_string_value(value)) ? TALUS_OK
+                                                                             : out_of_memory(error);
 }
 
 static enum talus_status file_read(struct config *config, const char *path,

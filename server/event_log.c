@@ -104,9 +104,9 @@ enum talus_status event_log_repair(struct store *store, const char *id, const ch
     struct text lines = {0};
     int64_t highest = 0;
     char *path = folder_join(folder, PROTOCOL_EVENTS_FILE);
-    enum talus_status status =
-        path == NULL ? talus_error_set(error, TALUS_MEMORY, "memory", "", "out of memory")
-                     : event_tail_read(&tail, folder, number_visit, &highest, error);
+    if (path == NULL)
+        return talus_error_set(error, TALUS_MEMORY, "memory", "", "out of memory");
+    enum talus_status status = event_tail_read(&tail, folder, number_visit, &highest, error);
     if (status == TALUS_OK)
         status = store_transitions(store, id, highest, line_append, &lines, error);
     if (status == TALUS_OK && lines.failed)

@@ -18,8 +18,6 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-extern char **environ;
-
 /* The environment with the lock's descriptor; free the array and its first entry. */
 static char **environment_make(int lock)
 {

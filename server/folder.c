@@ -156,12 +156,17 @@ int folder_open(const char *folder, const char *name)
     return descriptor;
 }
 
+static int entry_compare(const FTSENT **left, const FTSENT **right)
+{
+    return strcmp((*left)->fts_name, (*right)->fts_name);
+}
+
 void folder_list(const char *folder, bool (*visit)(const char *name, void *context), void *context)
 {
     size_t prefix = strlen(folder) + 1;
     char *root = strdup(folder);
     char *roots[] = {root, NULL};
-    FTS *walk = root == NULL ? NULL : fts_open(roots, FTS_PHYSICAL | FTS_NOCHDIR, NULL);
+    FTS *walk = root == NULL ? NULL : fts_open(roots, FTS_PHYSICAL | FTS_NOCHDIR, entry_compare);
     FTSENT *entry;
     while (walk != NULL && (entry = fts_read(walk)) != NULL) {
         if (entry->fts_info == FTS_D && entry->fts_level > 0 && entry->fts_name[0] == '.')

@@ -32,7 +32,8 @@ bool folder_name_public(const char *name);
 /* Opens a regular file under `folder` for reading, following no symbolic link on the way. Returns
  * the descriptor, or -1. */
 int folder_open(const char *folder, const char *name);
-/* Visits every public regular file, `name` relative to the folder; stops when `visit` is false. */
+/* Visits every public regular file in the order of names, `name` relative to the folder; stops when
+ * `visit` is false. */
 void folder_list(const char *folder, bool (*visit)(const char *name, void *context), void *context);
 
 #endif

@@ -16,8 +16,6 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-extern char **environ;
-
 enum { ANSWERS_MAX = 1000, ANSWER_BYTES_MAX = 64 << 20 };
 
 void helper_init(struct helper *helper, const struct config *config)

@@ -185,10 +185,13 @@ enum talus_status http_start(struct http_server **result, struct service *servic
                              struct talus_error *error)
 {
     struct http_server *server = calloc(1, sizeof *server);
-    enum talus_status status =
-        server == NULL ? talus_error_set(error, TALUS_MEMORY, "memory", "", "out of memory")
-                       : http_watch_create(&server->watch, service->config->request_seconds, error);
     *result = server;
+    if (server == NULL) {
+        (void)close(listener);
+        return talus_error_set(error, TALUS_MEMORY, "memory", "", "out of memory");
+    }
+    enum talus_status status =
+        http_watch_create(&server->watch, service->config->request_seconds, error);
     if (status == TALUS_OK) {
         server->service = service;
         server->daemon = MHD_start_daemon(

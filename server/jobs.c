@@ -58,9 +58,12 @@ static enum talus_status folder_fill(const char *folder, const struct job *job, 
                                                            .at = job->changed_at,
                                                            .state = "queued"});
     char *text = json_text(scene, 2);
-    enum talus_status status = text == NULL || line.failed ? out_of_memory(error) : TALUS_OK;
-    if (status == TALUS_OK)
-        status = folder_make(folder, error);
+    if (text == NULL || line.failed) {
+        free(text);
+        text_release(&line);
+        return out_of_memory(error);
+    }
+    enum talus_status status = folder_make(folder, error);
     if (status == TALUS_OK)
         status = folder_write(folder, PROTOCOL_SCENE_FILE, text, strlen(text), error);
     if (status == TALUS_OK)

@@ -100,7 +100,7 @@ struct insert_context {
     const struct store_key *key;
     int64_t queue_limit;
     enum store_insert result;
-    char *existing;
+    char existing[64];
 };
 
 static enum talus_status queue_check(sqlite3 *database, struct insert_context *insert,
@@ -155,9 +155,9 @@ enum talus_status store_job_insert(struct store *store, const struct job *job,
                                    enum store_insert *result, char existing[64],
                                    struct talus_error *error)
 {
-    struct insert_context insert = {
-        .job = job, .key = key, .queue_limit = queue_limit, .existing = existing};
+    struct insert_context insert = {.job = job, .key = key, .queue_limit = queue_limit};
     enum talus_status status = store_write(store, insert_apply, &insert, error);
+    memcpy(existing, insert.existing, sizeof insert.existing);
     *result = insert.result;
     return status;
 }

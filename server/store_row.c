@@ -13,6 +13,12 @@
 const char store_row_select[] = "SELECT id"
 #include "job_columns.def"
                                 " FROM jobs ";
+#undef JOB_TEXT
+#undef JOB_INTEGER
+#undef JOB_REAL
+#define JOB_TEXT(name) COLUMN(name)
+#define JOB_INTEGER(name) COLUMN(name)
+#define JOB_REAL(name) COLUMN(name)
 static const char replace_begin[] = "INSERT INTO jobs (id"
 #include "job_columns.def"
                                     ") VALUES (?";

@@ -57,31 +57,6 @@ static bool file_list_add(const char *name, void *context)
     return true;
 }
 
-static int file_compare(const void *a, const void *b)
-{
-    const json_t *const *left = a;
-    const json_t *const *right = b;
-    return strcmp(json_string_value(json_object_get(*left, "name")),
-                  json_string_value(json_object_get(*right, "name")));
-}
-
-/* The same files ordered by name; takes the reference. */
-static json_t *files_sorted(json_t *files)
-{
-    size_t count = json_array_size(files);
-    json_t **items = calloc(count + 1, sizeof *items);
-    json_t *sorted = json_array();
-    for (size_t index = 0; items != NULL && index < count; index++)
-        items[index] = json_array_get(files, index);
-    if (items != NULL)
-        qsort(items, count, sizeof *items, file_compare);
-    for (size_t index = 0; items != NULL && index < count; index++)
-        (void)json_array_append(sorted, items[index]);
-    free(items);
-    json_decref(files);
-    return sorted;
-}
-
 enum handled handle_file_list(struct request *request)
 {
     static const char *const allowed[] = {NULL};
@@ -94,7 +69,7 @@ enum handled handle_file_list(struct request *request)
         .checksums = request->service->checksums, .folder = folder, .files = json_array()};
     folder_list(folder, file_list_add, &list);
     free(folder);
-    reply_json(&request->reply, MHD_HTTP_OK, files_sorted(list.files));
+    reply_json(&request->reply, MHD_HTTP_OK, list.files);
     return HANDLED;
 }
 

@@ -66,7 +66,8 @@ static void curve_read(struct curve *curve, const struct history_reader *history
 static void array_print(struct text *text, const double *values, size_t count)
 {
     text_add_string(text, "[");
-    for (size_t index = 0; index < count; index++) {
+    /* An empty curve has no array. */
+    for (size_t index = 0; values != NULL && index < count; index++) {
         text_add_string(text, index == 0 ? "" : ",");
         text_add_number(text, values[index]);
     }
@@ -95,12 +96,13 @@ static void curve_print_json(struct text *text, const struct curve *curve,
 static void curve_print_csv(struct text *text, const struct curve *curve,
                             const struct history_column *column)
 {
+    const double *time = curve->time, *value = curve->value;
     text_print(text, "time,%s\r\n", column->name);
-    for (size_t index = 0; index < curve->count; index++) {
-        text_add_number(text, curve->time[index]);
+    for (size_t index = 0; time != NULL && value != NULL && index < curve->count; index++) {
+        text_add_number(text, time[index]);
         text_add_string(text, ",");
-        if (isfinite(curve->value[index]))
-            text_add_number(text, curve->value[index]);
+        if (isfinite(value[index]))
+            text_add_number(text, value[index]);
         text_add_string(text, "\r\n");
     }
 }
