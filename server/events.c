@@ -12,6 +12,7 @@
 #include <time.h>
 #include <unistd.h>
 
+enum { STREAM_BLOCK_BYTES = 8192 };
 static const double tick_seconds = 0.1;
 static const double comment_seconds = 15;
 
@@ -51,7 +52,8 @@ static ssize_t subscription_read(void *context, uint64_t position, char *buffer,
         own->last_sent = moment_monotonic();
         result = (ssize_t)length;
         if (own->sent == own->ready.length) {
-            text_drop(&own->ready, own->sent);
+            /* Thousands of idle readers must not each keep a buffer. */
+            text_release(&own->ready);
             own->sent = 0;
             events->woken = true;
             (void)pthread_cond_signal(&events->wake);
@@ -105,9 +107,9 @@ static void subscription_service(struct subscription *own, double now)
     bool produced = own->stream.out.length > 0;
     if (produced)
         text_add(&own->ready, own->stream.out.data, own->stream.out.length);
-    text_drop(&own->stream.out, own->stream.out.length);
     if (own->stream.done || own->ready.failed || own->stream.out.failed || events->ending)
         own->ended = true;
+    text_release(&own->stream.out);
     if (own->suspended && (own->ready.length > 0 || own->ended) && !own->closed) {
         own->suspended = false;
         if (idle)
@@ -205,8 +207,8 @@ void events_subscribe(struct events *events, struct request *request, struct eve
     struct subscription *own = calloc(1, sizeof *own);
     struct MHD_Response *response =
         own == NULL ? NULL
-                    : MHD_create_response_from_callback(MHD_SIZE_UNKNOWN, 16384, subscription_read,
-                                                        own, subscription_free);
+                    : MHD_create_response_from_callback(MHD_SIZE_UNKNOWN, STREAM_BLOCK_BYTES,
+                                                        subscription_read, own, subscription_free);
     if (response == NULL) {
         free(own);
         event_stream_close(stream);

@@ -2,6 +2,7 @@
 /* What clients may read of a job's folder. */
 #include "folder.h"
 #include "server_fixture.h"
+#include "text.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -57,15 +58,14 @@ static void test_open_stays_inside(void **state)
 
 static bool name_note(const char *name, void *context)
 {
-    (void)strcat(context, name);
-    (void)strcat(context, ";");
+    text_print(context, "%s;", name);
     return true;
 }
 
 static void test_list_and_size(void **state)
 {
     (void)state;
-    char names[256] = "";
+    struct text names = {0};
     char *folder = fixture_folder(), *sub = folder_join(folder, "frames");
     char *hidden = folder_join(folder, ".pictures");
     assert_int_equal(mkdir(sub, 0700), 0);
@@ -74,8 +74,9 @@ static void test_list_and_size(void **state)
     fixture_write(folder, "frames/b.hdf.part", "1", 1, 0);
     fixture_write(folder, ".pictures/a.png", "1", 1, 0);
     fixture_write(folder, "job.lock", "", 0, 0);
-    folder_list(folder, name_note, names);
-    assert_string_equal(names, "frames/a.hdf;");
+    folder_list(folder, name_note, &names);
+    assert_string_equal(names.data, "frames/a.hdf;");
+    text_release(&names);
     assert_int_equal(folder_size(folder), 7);
     free(sub);
     free(hidden);

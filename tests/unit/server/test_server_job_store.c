@@ -2,6 +2,7 @@
 #include "folder.h"
 #include "server_fixture.h"
 #include "store.h"
+#include "text.h"
 
 #include <pthread.h>
 #include <stdio.h>
@@ -136,9 +137,8 @@ static enum talus_status change_delete(struct job *job, void *context, struct ta
 static enum talus_status transition_note(const struct store_transition *transition, void *context,
                                          struct talus_error *error)
 {
-    char *text = context;
     (void)error;
-    (void)sprintf(text + strlen(text), "%d %s;", (int)transition->number, transition->state);
+    text_print(context, "%d %s;", (int)transition->number, transition->state);
     return TALUS_OK;
 }
 
@@ -147,7 +147,8 @@ static void test_changes(void **state)
     struct fixture *fixture = *state;
     struct talus_error error = {0};
     struct job job = {0};
-    char existing[64], story[256] = "";
+    char existing[64];
+    struct text story = {0};
     assert_int_equal(insert(fixture->store, "j1", "k", "b", 0, existing), STORE_INSERTED);
     assert_int_equal(store_job_change(fixture->store, "j1", change_fail, NULL, NULL, &error),
                      TALUS_LIMIT);
@@ -160,13 +161,14 @@ static void test_changes(void **state)
     assert_int_equal(job.state, JOB_CANCELLED);
     assert_int_equal(job.revision, revision + 1);
     job_release(&job);
-    assert_int_equal(store_transitions(fixture->store, "j1", 0, transition_note, story, &error),
+    assert_int_equal(store_transitions(fixture->store, "j1", 0, transition_note, &story, &error),
                      TALUS_OK);
-    assert_string_equal(story, "1 queued;2 cancelled;");
-    story[0] = '\0';
-    assert_int_equal(store_transitions(fixture->store, "j1", 1, transition_note, story, &error),
+    assert_string_equal(story.data, "1 queued;2 cancelled;");
+    text_release(&story);
+    assert_int_equal(store_transitions(fixture->store, "j1", 1, transition_note, &story, &error),
                      TALUS_OK);
-    assert_string_equal(story, "2 cancelled;");
+    assert_string_equal(story.data, "2 cancelled;");
+    text_release(&story);
     assert_int_equal(store_job_change(fixture->store, "j1", change_delete, NULL, NULL, &error),
                      TALUS_OK);
     assert_int_equal(store_job_read(fixture->store, "j1", &job, &error), TALUS_INVALID);
@@ -175,17 +177,18 @@ static void test_changes(void **state)
 
 static bool id_note(const struct job *job, void *context)
 {
-    (void)strcat(context, job->id);
-    (void)strcat(context, " ");
+    text_print(context, "%s ", job->id);
     return true;
 }
 
 static void expect_list(struct store *store, struct store_filter filter, const char *expected)
 {
     struct talus_error error = {0};
-    char ids[256] = "";
-    assert_int_equal(store_job_list(store, &filter, id_note, ids, &error), TALUS_OK);
-    assert_string_equal(ids, expected);
+    struct text ids = {0};
+    text_add_string(&ids, "");
+    assert_int_equal(store_job_list(store, &filter, id_note, &ids, &error), TALUS_OK);
+    assert_string_equal(ids.data, expected);
+    text_release(&ids);
 }
 
 static void test_lists(void **state)
