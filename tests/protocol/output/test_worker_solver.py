@@ -13,12 +13,14 @@ import h5py
 
 import worker_run
 
+SANITIZED = os.environ.get("TALUS_SANITIZE") == "ON"
+
 # A heap of capped-cone soil that slides against an obstacle and in part out of the scene: contact,
 # plastic flow, one-sided walls, elimination, anti-locking and automatic steps at once.
 SCENE = {
     "title": "heap against an obstacle",
     "dimension": "solid",
-    "duration": 0.6,
+    "duration": 0.4,
     "grid": {
         "cell": 0.5,
         "min": [0, 0, 0],
@@ -96,11 +98,13 @@ def scene(**changes):
 
 class SolverTest(worker_run.RunTest):
     def test_killed_and_resumed(self):
-        self.run_job(SCENE, "whole")
+        # Sanitizers make a run several times slower.
+        killed, most = (scene(duration=0.1), 3) if SANITIZED else (SCENE, 10)
+        self.run_job(killed, "whole")
         moments = random.Random(20261122)
         kills, options = 0, []
-        while kills < 10:
-            process = self.start(SCENE, "job", *options)
+        while kills < most:
+            process = self.start(killed, "job", *options)
             time.sleep(moments.uniform(0.05, 0.4))
             process.send_signal(signal.SIGKILL)
             process.communicate()
@@ -110,7 +114,7 @@ class SolverTest(worker_run.RunTest):
             options = ["--resume"]
         self.assertGreater(kills, 0)
         if process.returncode != 0:
-            self.run_job(SCENE, "job", "--resume")
+            self.run_job(killed, "job", "--resume")
         self.assert_same_results("whole", "job")
         receipts = [
             json.loads((self.folder / job / "receipt.json").read_text()) for job in ("whole", "job")
@@ -122,13 +126,13 @@ class SolverTest(worker_run.RunTest):
             self.assertEqual(receipts[0]["metrics"][name], receipts[1]["metrics"][name], name)
 
     def test_any_number_of_threads_gives_the_same_bits(self):
-        short = scene(duration=0.1)
+        short = scene(duration=0.05)
         self.run_job(short, "one")
         self.run_job(short, "two", "--threads", "2")
         self.assert_same_results("one", "two")
 
     def test_looking_does_not_change_the_run(self):
-        short = scene(duration=0.2)
+        short = scene(duration=0.1)
         self.run_job(short, "one")
         short["output"]["frames"]["every"] = 0.01
         short["output"]["frames"]["grid_fields"] = ["mass", "velocity", "reaction"]
@@ -169,7 +173,7 @@ class SolverTest(worker_run.RunTest):
         errors = self.run_job(scene(gravitee=1), expect=10)
         self.assertIn("/gravitee", errors)
 
-    @unittest.skipIf(os.environ.get("TALUS_SANITIZE") == "ON", "sanitizers need address space")
+    @unittest.skipIf(SANITIZED, "sanitizers need address space")
     def test_out_of_memory(self):
         def limit():
             resource.setrlimit(resource.RLIMIT_AS, (400 << 20, 400 << 20))
