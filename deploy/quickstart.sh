@@ -99,7 +99,7 @@ awk -v peak="$peak" -v steady="$steady" 'BEGIN {
 
 picture=$state/column-impact.png
 curl --silent --show-error --fail --noproxy '*' --output "$picture" \
-    "$TALUS_SERVER/v1/jobs/$id/frames/20.png?field=velocity&width=1200"
+    "$TALUS_SERVER/v1/jobs/$id/frames/12.png?field=velocity&width=1200"
 
 say "done in $((SECONDS - begin)) s"
 cat <<END
