@@ -47,6 +47,7 @@ static inline lanes lanes_absolute(lanes value)
 /* The larger one; a lane that is not a number stays so, whichever side it comes from. */
 static inline lanes lanes_sticky_maximum(lanes a, lanes b)
 {
+    /* NOLINTNEXTLINE(misc-redundant-expression): a != a finds what is not a number. */
     return lanes_select((a >= b) | (a != a), a, b);
 }
 
