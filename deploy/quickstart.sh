@@ -107,5 +107,5 @@ picture        $picture
 ParaView       $state/jobs/$id/frames.hdf.series
 h5py           $state/jobs/$id/results.h5
 all forces     build/release/bin/talus reactions $id --server $TALUS_SERVER
-stop talusd           kill $(cat "$state/talusd.pid")
+stop talusd    kill $(cat "$state/talusd.pid")
 END
