@@ -3,7 +3,7 @@
 
 #include "base/protocol.h"
 #include "output/file.h"
-#include "output/json_text.h"
+#include "output/lenient_text.h"
 
 #include <errno.h>
 #include <fcntl.h>
@@ -25,9 +25,9 @@ static enum talus_status write_columns(const char *folder, const struct talus_co
         return status;
     json_t *list = json_array();
     for (size_t index = 0; index < count; index++) {
-        if (json_array_append_new(list,
-                                  json_pack("{s:o, s:o}", "name", json_text(columns[index].name),
-                                            "unit", json_text(columns[index].unit))) != 0) {
+        if (json_array_append_new(list, json_pack("{s:o, s:o}", "name",
+                                                  lenient_text_json(columns[index].name), "unit",
+                                                  lenient_text_json(columns[index].unit))) != 0) {
             json_decref(list);
             return file_error(error, ENOMEM, "write", path);
         }

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 #include "output/file.h"
-#include "output/json_text.h"
+#include "output/lenient_text.h"
 #include "worker/job_run.h"
 
 #include <stdio.h>
@@ -121,8 +121,8 @@ static enum talus_status write_last_event(struct job_run *run, const struct endi
     if (ending->reason == NULL)
         event = json_pack("{s:O}", "metrics", metrics);
     else
-        event = json_pack("{s:s, s:o, s:O}", "reason", ending->reason, "detail", json_text(detail),
-                          "metrics", metrics);
+        event = json_pack("{s:s, s:o, s:O}", "reason", ending->reason, "detail",
+                          lenient_text_json(detail), "metrics", metrics);
     enum protocol_message message = ending->reason == NULL ? PROTOCOL_FINISHED : PROTOCOL_FAILED;
     enum talus_status status = event_write(&run->events, message, event, error);
     if (status == TALUS_OK)

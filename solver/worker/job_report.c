@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-#include "output/json_text.h"
+#include "output/lenient_text.h"
 #include "worker/job_run.h"
 
 #include <math.h>
@@ -120,7 +120,8 @@ enum talus_status job_inform(struct job_run *run, const char *text, struct talus
 {
     job_log_write(&run->log, "info", text);
     return event_write(&run->events, PROTOCOL_LOG,
-                       json_pack("{s:s, s:o}", "level", "info", "detail", json_text(text)), error);
+                       json_pack("{s:s, s:o}", "level", "info", "detail", lenient_text_json(text)),
+                       error);
 }
 
 enum talus_status job_warn(struct job_run *run, const char *code, const char *pointer,
@@ -130,7 +131,7 @@ enum talus_status job_warn(struct job_run *run, const char *code, const char *po
     (void)snprintf(line, sizeof line, "%s%s%s", pointer, *pointer != '\0' ? ": " : "", text);
     job_log_write(&run->log, "warning", line);
     return event_write(&run->events, PROTOCOL_WARNING,
-                       json_pack("{s:s, s:o, s:o}", "code", code, "pointer", json_text(pointer),
-                                 "detail", json_text(text)),
+                       json_pack("{s:s, s:o, s:o}", "code", code, "pointer",
+                                 lenient_text_json(pointer), "detail", lenient_text_json(text)),
                        error);
 }

@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-#include "output/json_text.h"
+#include "output/lenient_text.h"
 
 #include <stdlib.h>
 #include <string.h>
 
-json_t *json_text(const char *text)
+json_t *lenient_text_json(const char *text)
 {
     json_t *string = json_string(text);
     if (string != NULL)
