@@ -3,6 +3,7 @@
 
 #include "base/protocol.h"
 #include "folder.h"
+#include "moment.h"
 
 #include <signal.h>
 #include <stdio.h>
@@ -21,9 +22,11 @@ struct attempt *attempt_create(const struct job *job, const char *folder, const 
     attempt->number = job->attempt;
     attempt->threads = job->threads;
     attempt->disk_limit = job->disk_limit;
-    attempt->wall_limit = job->wall_limit;
-    attempt->wall_before = job->wall_used;
-    attempt->started = job->attempt_started;
+    /* Read once: a step of the machine's clock during the run must not end it. */
+    double elapsed = moment_now() - job->attempt_started;
+    if (job->wall_limit > 0)
+        attempt->wall_deadline =
+            moment_monotonic() + job->wall_limit - job->wall_used - (elapsed > 0 ? elapsed : 0);
     attempt->other_boot = job->boot == NULL || strcmp(job->boot, boot) != 0;
     attempt->cancel_requested = job->cancel_requested != 0;
     attempt->tail.descriptor = -1;

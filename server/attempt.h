@@ -14,12 +14,10 @@
 struct attempt {
     char *id, *folder;
     int64_t number, threads, disk_limit;
-    double wall_limit;  /* [s], 0: none */
-    double wall_before; /* [s] used by earlier attempts */
-    double started;     /* [s since 1970] */
-    bool other_boot;    /* it was started before the machine was */
-    pid_t pid;          /* 0: adopted, known by its lock only */
-    bool ended;         /* our child has ended with wait_status */
+    double wall_deadline; /* when limits.wall_seconds is used up (monotonic), 0: never */
+    bool other_boot;      /* it was started before the machine was */
+    pid_t pid;            /* 0: adopted, known by its lock only */
+    bool ended;           /* our child has ended with wait_status */
     int wait_status;
     bool cancel_requested;
     const char *stop_reason; /* why we stopped it ("time_limit", "disk_limit"), or NULL */

@@ -53,7 +53,7 @@ json_t *body_json(struct request *request)
         not_json(request, line, column, "brackets nest too deep");
         return NULL;
     }
-    json_t *root = json_loadb(text, length, JSON_REJECT_DUPLICATES, &problem);
+    json_t *root = json_loadb(text, length, JSON_REJECT_DUPLICATES | JSON_DECODE_ANY, &problem);
     if (root == NULL)
         not_json(request, problem.line, problem.column, problem.text);
     return root;

@@ -9,6 +9,8 @@
 #include <string.h>
 #include <unistd.h>
 
+enum { GIVEN_BYTES_MAX = 200 };
+
 static void reply_begin(struct reply *reply, unsigned int status, struct MHD_Response *response,
                         const char *type)
 {
@@ -167,7 +169,9 @@ void issue_add(json_t *errors, const char *pointer, const char *code, const json
     va_end(arguments);
     json_t *issue =
         json_pack("{s:s, s:s, s:s}", "pointer", pointer, "code", code, "detail", detail);
-    if (given != NULL)
+    /* A client knows its own megabytes. */
+    if (given != NULL && !json_is_array(given) && !json_is_object(given) &&
+        json_string_length(given) <= GIVEN_BYTES_MAX)
         (void)json_object_set(issue, "given", (json_t *)given);
     if (allowed != NULL)
         (void)json_object_set(issue, "allowed", (json_t *)allowed);

@@ -121,8 +121,7 @@ static void attempt_stop(struct supervisor *supervisor, struct attempt *attempt,
 /* Finds reasons to stop a worker. */
 static void attempt_check(struct supervisor *supervisor, struct attempt *attempt, double now)
 {
-    double elapsed = moment_now() - attempt->started + attempt->wall_before;
-    if (attempt->wall_limit > 0 && elapsed > attempt->wall_limit && attempt->stop_reason == NULL)
+    if (attempt->wall_deadline != 0 && now > attempt->wall_deadline && attempt->stop_reason == NULL)
         attempt->stop_reason = "time_limit";
     if (attempt->disk_limit > 0 && now >= attempt->next_disk_check) {
         attempt->next_disk_check = now + disk_check_seconds;
