@@ -92,6 +92,24 @@ static int purge_if_sparse(struct run *run)
     return 0;
 }
 
+/* Walls, tiles and scratch of blocks that have come or gone. */
+static enum talus_status refresh(struct run *run, struct talus_error *error)
+{
+    if ((run->grid.tiles_stale && (run_find_walls(run) != 0 || run_prepare_tiles(run) != 0)) ||
+        run_reserve_scratch(run) != 0)
+        return talus_error_set(error, TALUS_MEMORY, "memory", "", "out of memory at step %llu",
+                               (unsigned long long)run->step);
+    return TALUS_OK;
+}
+
+enum talus_status run_purge(struct run *run, struct talus_error *error)
+{
+    if (purge_if_sparse(run) != 0)
+        return talus_error_set(error, TALUS_MEMORY, "memory", "", "out of memory at step %llu",
+                               (unsigned long long)run->step);
+    return refresh(run, error);
+}
+
 enum talus_status run_rebin(struct run *run, struct talus_error *error)
 {
     for (size_t index = 0; index < run->grid.tile_count; index++) {
@@ -103,10 +121,5 @@ enum talus_status run_rebin(struct run *run, struct talus_error *error)
                 return status;
         }
     }
-    if (purge_if_sparse(run) != 0 ||
-        (run->grid.tiles_stale && (run_find_walls(run) != 0 || run_prepare_tiles(run) != 0)) ||
-        run_reserve_scratch(run) != 0)
-        return talus_error_set(error, TALUS_MEMORY, "memory", "", "out of memory at step %llu",
-                               (unsigned long long)run->step);
-    return TALUS_OK;
+    return refresh(run, error);
 }

@@ -162,6 +162,9 @@ void run_advance_block(struct run *run, struct block_scratch *scratch, uint32_t 
 /* ---- rebin.c ---- */
 /* Moves the particles of the outboxes to their new blocks. */
 TALUS_MUST_CHECK enum talus_status run_rebin(struct run *run, struct talus_error *error);
+/* Drops empty blocks if they are many. Before a step: between steps the nodes still show what the
+ * walls did in the last one. */
+TALUS_MUST_CHECK enum talus_status run_purge(struct run *run, struct talus_error *error);
 
 /* Energy that a particle takes along when it is taken out. */
 void run_book_eliminated_energy(struct run *run, const struct particle_record *record,

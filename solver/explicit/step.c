@@ -110,6 +110,11 @@ static struct tile_sums sum_tiles(const struct run *run)
 
 enum talus_status run_take_step(struct run *run, struct talus_error *error)
 {
+    enum talus_status status = run_purge(run, error);
+    if (status != TALUS_OK) {
+        run->failed = true;
+        return status;
+    }
     partition_outbox(run);
     if (run->scene.solver.stress_update == TALUS_STRESS_MODIFIED_LAST) {
         run_kick_nodes(run);
@@ -124,7 +129,7 @@ enum talus_status run_take_step(struct run *run, struct talus_error *error)
     const struct tile_sums sums = sum_tiles(run);
     run->energy.plastic += sums.plastic_energy;
     run->energy.viscous += sums.viscous_energy;
-    enum talus_status status = run_rebin(run, error);
+    status = run_rebin(run, error);
     if (status == TALUS_OK)
         status = health_check_step(run, &sums, error);
     if (status != TALUS_OK) {

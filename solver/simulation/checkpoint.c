@@ -1,17 +1,19 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* The complete state as blobs, and back. Particles keep their blocks, lanes and rows, and nodes
  * their masses and forces, so that a restored run goes on with the same bits. */
+#include "simulation/scene_fingerprint.h"
 #include "simulation/simulation_private.h"
 
 #include <stdlib.h>
 #include <string.h>
 
-enum { CHECKPOINT_VERSION = 1, BLOB_COUNT = 9 };
+enum { CHECKPOINT_VERSION = 2, BLOB_COUNT = 10 };
 
 struct checkpoint_header {
     uint32_t version, double_count, node_component_count, lane_count;
     uint64_t block_count, node_block_count, particle_count, face_count, boundary_count, probe_count;
-    uint64_t step, initial_particle_count;
+    uint64_t step, initial_particle_count, wall_node_count;
+    uint64_t scene; /* fingerprint */
     uint32_t row_max, over_critical_warned;
     double time, time_step, critical_time_step, last_time_step, interval, duration;
     double largest_speed, checked_speed, mass_cutoff;
@@ -30,6 +32,8 @@ static struct checkpoint_header make_header(const struct talus_simulation *simul
     struct checkpoint_header header;
     memset(&header, 0, sizeof header); /* padding too: equal states give equal bytes */
     header.version = CHECKPOINT_VERSION;
+    header.scene = scene_fingerprint(&run->scene);
+    header.wall_node_count = run->wall_node_count;
     header.double_count = run->grid.layout.double_count;
     header.node_component_count = run->grid.nodes.layout.component_count;
     header.lane_count = LANE_COUNT;
@@ -92,6 +96,25 @@ static void save_windows(const struct run *run, unsigned char *out)
     }
 }
 
+/* What grid output shows as reactions until the next step. */
+static void save_wall_impulses(const struct run *run, unsigned char *out)
+{
+    for (size_t index = 0; index < run->wall_node_count; index++)
+        memcpy(out + index * sizeof run->wall_nodes[index].impulse, run->wall_nodes[index].impulse,
+               sizeof run->wall_nodes[index].impulse);
+}
+
+static bool restore_wall_impulses(struct run *run, const struct talus_blob *blob)
+{
+    const unsigned char *in = blob->data;
+    if (blob->bytes != run->wall_node_count * 3 * sizeof(double))
+        return false;
+    for (size_t index = 0; index < run->wall_node_count; index++)
+        memcpy(run->wall_nodes[index].impulse, in + index * sizeof run->wall_nodes[index].impulse,
+               sizeof run->wall_nodes[index].impulse);
+    return true;
+}
+
 static void save_blocks(const struct run *run, struct checkpoint_block *blocks,
                         unsigned char *chunks)
 {
@@ -124,10 +147,11 @@ const struct talus_blob *talus_simulation_checkpoint(struct talus_simulation *si
                                       run->walls.face_count * sizeof *run->faces,
                                       run->scene.boundary_count * sizeof *run->boundaries,
                                       windows_bytes(run),
-                                      run->scene.probe_count * sizeof *simulation->probe_ids};
-    static const char *const names[BLOB_COUNT] = {"header",      "blocks",      "particles",
-                                                  "node_places", "node_values", "faces",
-                                                  "boundaries",  "windows",     "probe_particles"};
+                                      run->scene.probe_count * sizeof *simulation->probe_ids,
+                                      run->wall_node_count * 3 * sizeof(double)};
+    static const char *const names[BLOB_COUNT] = {
+        "header", "blocks",     "particles", "node_places",     "node_values",
+        "faces",  "boundaries", "windows",   "probe_particles", "wall_impulses"};
     size_t total = 0;
     for (size_t index = 0; index < BLOB_COUNT; index++)
         total += (sizes[index] + 63) / 64 * 64;
@@ -154,13 +178,15 @@ const struct talus_blob *talus_simulation_checkpoint(struct talus_simulation *si
                                              run->faces,
                                              run->boundaries,
                                              NULL,
-                                             simulation->probe_ids};
+                                             simulation->probe_ids,
+                                             NULL};
     for (size_t index = 0; index < BLOB_COUNT; index++) {
         if (sources[index] != NULL && sizes[index] > 0)
             memcpy(data[index], sources[index], sizes[index]);
     }
     save_blocks(run, (struct checkpoint_block *)(void *)data[1], data[2]);
     save_windows(run, data[7]);
+    save_wall_impulses(run, data[9]);
     *count = BLOB_COUNT;
     return simulation->blobs;
 }
@@ -180,6 +206,7 @@ static bool header_fits(const struct run *run, const struct checkpoint_header *h
                         const struct talus_blob *const found[BLOB_COUNT])
 {
     return header->version == CHECKPOINT_VERSION && header->lane_count == LANE_COUNT &&
+           header->scene == scene_fingerprint(&run->scene) &&
            header->double_count == run->grid.layout.double_count &&
            header->node_component_count == run->grid.nodes.layout.component_count &&
            header->face_count == run->walls.face_count &&
@@ -191,7 +218,8 @@ static bool header_fits(const struct run *run, const struct checkpoint_header *h
                                   sizeof(double) &&
            found[5]->bytes == run->walls.face_count * sizeof *run->faces &&
            found[6]->bytes == run->scene.boundary_count * sizeof *run->boundaries &&
-           found[8]->bytes == run->scene.probe_count * sizeof(uint32_t);
+           found[8]->bytes == run->scene.probe_count * sizeof(uint32_t) &&
+           found[9]->bytes == header->wall_node_count * 3 * sizeof(double);
 }
 
 static bool restore_nodes(struct run *run, const struct checkpoint_header *header,
@@ -293,7 +321,8 @@ static bool restore_state(struct talus_simulation *simulation,
         return false;
     if (found[8]->bytes > 0)
         memcpy(simulation->probe_ids, found[8]->data, found[8]->bytes);
-    return run_find_walls(run) == 0 && run_prepare_tiles(run) == 0 && run_reserve_scratch(run) == 0;
+    return run_find_walls(run) == 0 && run_prepare_tiles(run) == 0 &&
+           run_reserve_scratch(run) == 0 && restore_wall_impulses(run, found[9]);
 }
 
 enum talus_status talus_simulation_restore(const struct talus_scene *scene,
@@ -302,9 +331,9 @@ enum talus_status talus_simulation_restore(const struct talus_scene *scene,
                                            struct talus_simulation **simulation,
                                            struct talus_error *error)
 {
-    static const char *const names[BLOB_COUNT] = {"header",      "blocks",      "particles",
-                                                  "node_places", "node_values", "faces",
-                                                  "boundaries",  "windows",     "probe_particles"};
+    static const char *const names[BLOB_COUNT] = {
+        "header", "blocks",     "particles", "node_places",     "node_values",
+        "faces",  "boundaries", "windows",   "probe_particles", "wall_impulses"};
     const struct talus_blob *found[BLOB_COUNT];
     *simulation = NULL;
     for (size_t index = 0; index < BLOB_COUNT; index++) {
