@@ -31,10 +31,10 @@ static void test_one_and_two_threads(void **state)
             struct talus_simulation *one = simulation_fixture_start(&fixture, 1);
             struct talus_simulation *two = simulation_fixture_start(&fixture, 2);
             assert_true(talus_simulation_state_hash(one) == talus_simulation_state_hash(two));
-            for (size_t turn = 0; turn < 3; turn++) {
+            for (size_t turn = 0; turn < 2; turn++) {
                 const uint64_t before = talus_simulation_state_hash(one);
-                simulation_run_steps(one, 20);
-                simulation_run_steps(two, 20);
+                simulation_run_steps(one, 15);
+                simulation_run_steps(two, 15);
                 assert_true(talus_simulation_state_hash(one) != before);
                 assert_true(talus_simulation_state_hash(one) == talus_simulation_state_hash(two));
             }

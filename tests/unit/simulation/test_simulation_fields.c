@@ -14,7 +14,7 @@ static void build(struct simulation_fixture *fixture, size_t axes, enum talus_st
         simulation_fixture_add_material(fixture, "linear_elastic", elastic, LENGTH(elastic));
     struct talus_body *body = simulation_fixture_add_box(
         fixture, material, (double[3]){0.4, 0.2, 0.4}, (double[3]){0.8, 0.5, 0.7}, 2);
-    body->velocity[0] = 1.5;
+    body->velocity[0] = axes == 1 ? -1.5 : 1.5;
     fixture->scene.gravity[axes == 1 ? 0 : 1] = -9.81;
     fixture->scene.solver.strain = strain;
     fixture->scene.output.frame_fields = (1u << TALUS_FIELD_COUNT) - 1;
