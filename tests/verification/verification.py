@@ -211,6 +211,10 @@ class Verification:
         self._judge(quantity, f"aim {aim:g}, missed and known; at most {guard:g}",
                     f"{value:.4g}", value <= guard, "misses")
 
+    def note(self, quantity, value, reason):
+        """A figure that is reported and not judged."""
+        self._judge(quantity, f"none: {reason}", f"{value:.4g}", True, "note")
+
     def finish(self):
         self.scratch.cleanup()
         sys.exit(1 if self.failed else 0)
