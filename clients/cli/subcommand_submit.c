@@ -17,7 +17,6 @@ static const struct option_spec options[] = {
     {"threads", "N", "threads of the job; 0: as many as pay (default 1)"},
     {"wall-seconds", "S", "end the job after that time over all attempts"},
     {"idempotency-key", "KEY", "the same key with the same scene makes one job (default: random)"},
-    {"reuse", NULL, "take the result of a finished job with the same scene, if there is one"},
     {"check", NULL, "validate and forecast only; nothing is run"},
     {"watch", NULL, "follow the job to its end, like `talus watch`"},
     {NULL, NULL, NULL},
@@ -93,8 +92,6 @@ static char *make_body(const struct arguments *arguments)
     json_t *body = json_pack("{s:o}", "scene", scene);
     if (name != NULL)
         (void)json_object_set_new(body, "name", json_string(name));
-    if (arguments_has(arguments, "reuse"))
-        (void)json_object_set_new(body, "reuse", json_true());
     if (add_labels(body, arguments) && add_numbers(body, arguments)) {
         text = json_dumps(body, JSON_COMPACT);
         if (text == NULL)

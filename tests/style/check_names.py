@@ -5,7 +5,8 @@ import sys
 
 from source_tree import main
 
-SHARED_NAMES = {"main.c", "README.md", "CMakeLists.txt", ".gitignore", "__init__.py", "index.html"}
+SHARED_NAMES = {"main.c", "README.md", "CMakeLists.txt", ".gitignore", ".clang-tidy", "__init__.py",
+                "index.html"}
 
 
 def check_names(tree):
