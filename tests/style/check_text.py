@@ -11,7 +11,7 @@ LICENSED = (".c", ".h", ".def", ".inc", ".py", ".sh", ".cmake", "CMakeLists.txt"
 MACHINE_PATH = re.compile(r"(?<![\w./:-])/(?:home|Users|root|work|mnt)/\w")
 OUTSIDE_PATH = re.compile(r"\.\./shared\b")
 # A source is cited by author and year; a note that is not in the repository helps nobody.
-NOTE = re.compile(r"\b(?:THEORY|CASES|DESIGN)(?:\.md\b|[:,)]|'s\b|,? \d)|\bINTERFACE(?:[:,.]|,? \d)")
+NOTE = re.compile(r"\b(?:THEORY|DESIGN)(?:[:,.)]|,? \d)|\bINTERFACE(?:[:,.]|,? \d)")
 DOCUMENT = re.compile(r"\b([A-Z][A-Z_]{3,}\.md)\b")
 
 
