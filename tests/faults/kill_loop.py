@@ -18,7 +18,7 @@ import time
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "protocol"))
 from load import Load  # noqa: E402
 from sse_reader import read_all, series  # noqa: E402
-from talus_harness import Daemon, FINAL, PATIENCE, fake_scene, wait_for  # noqa: E402
+from talus_harness import Daemon, FINAL, wait_for  # noqa: E402
 
 KILLS = int(os.environ.get("TALUS_KILLS", os.environ.get("TALUS_KILLS_DEFAULT", "100")))
 SEED = int(os.environ.get("TALUS_SEED", str(int(time.time()))))
@@ -132,8 +132,12 @@ def check_runs(daemon, jobs, check):
 
 def check_story(daemon, job, check):
     """The events of a job tell one story: numbered states, one end, every row once."""
-    events = read_all(daemon.port, f"/v1/jobs/{job['id']}/events")
     where = f"{job['id']} ({job['state']})"
+    try:
+        events = read_all(daemon.port, f"/v1/jobs/{job['id']}/events", seconds=10)
+    except (OSError, AssertionError, EOFError) as error:
+        check(False, f"{where}: its story has no end: {error!r}")
+        return
     states = [event.data for event in events if event.name == "state"]
     numbers = [state["number"] for state in states]
     check(numbers == list(range(numbers[0], numbers[0] + len(numbers))), f"{where}: states {states}")
@@ -149,7 +153,6 @@ def check_story(daemon, job, check):
     if job["state"] == "succeeded":
         for name, (time_list, _) in series(events).items():
             check(time_list == [k / rows for k in range(rows + 1)], f"{where}: rows of {name}")
-    return events
 
 
 def check_file(daemon, job, check):
@@ -206,7 +209,8 @@ def main():
         check_jobs(daemon, load, jobs, check)
         check_runs(daemon, jobs, check)
         for job in jobs.values():
-            check_story(daemon, job, check)
+            if job["state"] in FINAL and len(check.texts) < 40:
+                check_story(daemon, job, check)
             check_file(daemon, job, check)
         check_keys(daemon, load, jobs, check)
         check_folders(daemon, jobs, check)

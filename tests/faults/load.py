@@ -69,6 +69,8 @@ class Load:
         rows = source.choice((5, 20, 60))
         directive = {"seconds": source.choice((0.02, 0.1, 0.5)), "rows": rows,
                      "checkpoint": source.choice((0, 3)), "frame_bytes": source.choice((500, 50000))}
+        if self.with_crashes and source.random() < 0.3:
+            directive.update(crash={"row": source.randint(1, rows)}, torn=True)
         body = {"scene": fake_scene(directive), "labels": {"key": key, "rows": str(rows)},
                 "retries": 50 if self.with_crashes else 2}
         self.bodies[key] = body
