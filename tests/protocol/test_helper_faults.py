@@ -9,6 +9,8 @@ from talus_harness import DaemonTest, PATIENCE, fake_scene
 
 
 class HelperFaults(DaemonTest):
+    config = {"helper_seconds": 1.5 * PATIENCE, "render_seconds": 3 * PATIENCE}
+
     def submit(self, directive=None):
         return self.client.post("/v1/jobs", {"scene": fake_scene(directive)})
 

@@ -10,7 +10,7 @@ from talus_harness import DaemonTest, PATIENCE, fake_scene
 GOOD = json.dumps({"scene": fake_scene()})
 
 
-class Malformed(DaemonTest):
+class RawTest(DaemonTest):
     def raw(self, data, timeout=10.0, half_close=False):
         """Sends bytes; returns (list of statuses, everything that came) until the server closes
         or stays silent after an answer."""
@@ -49,6 +49,8 @@ class Malformed(DaemonTest):
             self.assertIn(status, allowed, got[:500])
         self.assertEqual(self.client.get("/healthz").status, 200)
 
+
+class Malformed(RawTest):
     def test_lengths_that_conflict(self):
         body = GOOD.encode()
         length = len(body)
@@ -113,8 +115,6 @@ class Malformed(DaemonTest):
         self.refused(self.head("GET /v1/version HTTP/1.1", "X-Big: " + "a" * 100000), (431, None))
         many = [f"X-{index}: {index}" for index in range(20000)]
         self.refused(self.head("GET /v1/version HTTP/1.1", *many), (431, None))
-        self.refused(self.head("GET /v1/jobs?" + "&".join(f"a{k}=1" for k in range(3000)) + " HTTP/1.1",
-                               "Connection: close"), (400, 414, 422, 431, None))
 
     def test_bodies_over_a_megabyte(self):
         # The announced length alone is enough to refuse.
@@ -162,7 +162,7 @@ class Malformed(DaemonTest):
         for _ in range(20):
             with socket.create_connection(("127.0.0.1", self.daemon.port)) as stream:
                 stream.sendall(data)
-        self.refused(data, (400, 408, None), half_close=True)
+        self.refused(data, (400, 408, None), half_close=True, timeout=1)
 
     def test_expect_continue(self):
         body = GOOD.encode()
@@ -257,8 +257,15 @@ class BadJson(DaemonTest):
         self.assertIn(reply.status, (400, 422))
 
 
-class SlowClients(DaemonTest):
+class SlowClients(RawTest):
     config = {"request_seconds": 3}
+
+    def test_thousands_of_query_parameters(self):
+        """libmicrohttpd 0.9.75 runs out of its pool and falls silent; the deadline closes it."""
+        query = "&".join(f"a{k}=1" for k in range(3000))
+        begin = time.monotonic()
+        self.refused(self.head(f"GET /v1/jobs?{query} HTTP/1.1"), (400, 414, 422, 431, None), timeout=12)
+        self.assertLess(time.monotonic() - begin, 8 * PATIENCE)
 
     def test_slow_loris_is_closed(self):
         """A head that never ends, byte by byte, must not hold a connection for long."""
