@@ -199,9 +199,11 @@ class Daemon:
         command = [TALUSD, "--state", self.state, "--listen", f"127.0.0.1:{self.port}",
                    "--workers", str(self.workers), "--worker-program", self.program,
                    "--config", self.config]
+        # What the address sanitizer keeps of freed memory would count as the daemon's.
+        environment = dict(os.environ, ASAN_OPTIONS="quarantine_size_mb=4")
         with open(self.log, "ab") as log:
-            self.process = subprocess.Popen(command, stdin=subprocess.DEVNULL, stdout=log,
-                                            stderr=log, start_new_session=True)
+            self.process = subprocess.Popen(command, stdin=subprocess.DEVNULL, stdout=log, stderr=log,
+                                            env=environment, start_new_session=True)
         if wait:
             wait_for(self.answers, 30, f"daemon up: {self.tail()}")
         return self

@@ -213,7 +213,7 @@ class WholeRun(DaemonTest):
 
 class KilledRuns(DaemonTest):
     real = True
-    scene = falling_block(duration=0.6, cell=0.02, checkpoints=0.2)
+    scene = falling_block(duration=0.6 / PATIENCE ** 2, cell=0.02, checkpoints=0.2)
 
     @classmethod
     def setUpClass(cls):
@@ -241,7 +241,8 @@ class KilledRuns(DaemonTest):
         history = self.client.get(f"/v1/jobs/{job}/files/history.bin").body
         self.assertEqual(sha256(history), sha256(self.undisturbed), "not the same bits")
         events = read_all(self.daemon.port, f"/v1/jobs/{job}/events")
-        times = list(numpy.frombuffer(history, "<f8").reshape(301, -1)[:, 0])
+        columns = self.client.get(f"/v1/jobs/{job}/files/history.json").json()["columns"]
+        times = list(numpy.frombuffer(history, "<f8").reshape(-1, len(columns))[:, 0])
         for name, (time_list, _) in series(events).items():
             self.assertEqual(time_list, times, name)
 
@@ -322,7 +323,7 @@ class ByHand(unittest.TestCase):
             self.assertEqual(self.in_folder(folder, scene).returncode, 11)
 
     def test_terminated_then_resumed(self):
-        scene = falling_block(0.6, 0.02)
+        scene = falling_block(0.6 / PATIENCE ** 2, 0.02)
         with tempfile.TemporaryDirectory() as folder:
             self.assertEqual(self.in_folder(folder, scene).returncode, 0)
             with open(os.path.join(folder, "out", "history.bin"), "rb") as file:
