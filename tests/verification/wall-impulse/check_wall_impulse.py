@@ -2,7 +2,7 @@
 """A block that hits a wall: the recorded impulse is its change of momentum."""
 from verification import Verification
 
-CASES = [  # title, dimension, release, wall, stress update
+VARIANTS = [  # title, dimension, release, wall, stress update
     ("bounces, one-sided wall", "plane_strain", True, "stop", "modified_last"),
     ("bounces, wall that keeps what runs into it", "plane_strain", True, "keep", "modified_last"),
     ("is caught, two-sided wall", "plane_strain", False, "stop", "modified_last"),
@@ -39,7 +39,7 @@ def momentum(frame):
 
 
 verification = Verification("wall-impulse")
-for case in CASES:
+for case in VARIANTS:
     run = verification.run(scene(*case))
     before, after = momentum(run.frame(0)), momentum(run.frame(-1))
     # The reaction is what the material does to the wall.
