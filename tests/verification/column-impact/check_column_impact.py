@@ -78,7 +78,10 @@ def check_impact(verification):
 def check_column(verification):
     """The shipped scene as it is: 73,728 particles in three dimensions."""
     run = verification.run(shipped_scene("mast-7.4-column-impact"), threads=2)
-    verification.below("shipped scene, 2 threads: wall time [s]", run.metrics["wall_seconds"], 360)
+    verification.below("shipped scene, 2 threads: CPU time [s], six minutes of two cores",
+                       run.metrics["cpu_seconds"], 720)
+    verification.note("shipped scene, 2 threads: wall time [s]", run.metrics["wall_seconds"],
+                      "it depends on what else runs")
     verification.equal("shipped scene: particles at the start",
                        run.frame(0)["position"].shape[0], 73728)
     static = 75.3e3
