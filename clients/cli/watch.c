@@ -36,6 +36,24 @@ static double now(void)
     return (double)time.tv_sec + 1e-9 * (double)time.tv_nsec;
 }
 
+/* The unit of the forces in a list of series. */
+static void take_unit(struct watch *watch, const struct http_reply *reply)
+{
+    size_t index;
+    json_t *series;
+    json_t *list = json_loadb(reply->body == NULL ? "" : reply->body, reply->length, 0, NULL);
+    json_array_foreach(list, index, series)
+    {
+        char name[96];
+        int component;
+        const char *unit = json_text(series, "unit");
+        if (unit[0] != '\0' &&
+            reaction_series_parse(json_text(series, "name"), name, sizeof name, &component))
+            (void)snprintf(watch->unit, sizeof watch->unit, "%s", unit);
+    }
+    json_decref(list);
+}
+
 /* The unit of a force depends on the dimension of the scene: asked once, on a connection of its
  * own since the other one is streaming. Without an answer forces are in N. */
 static void find_unit(struct watch *watch)
@@ -43,31 +61,15 @@ static void find_unit(struct watch *watch)
     struct connection second;
     struct http_reply reply = {0};
     char problem[256];
-    size_t index;
-    json_t *series;
-    (void)strcpy(watch->unit, "N");
+    (void)snprintf(watch->unit, sizeof watch->unit, "N");
     char *path = job_path(watch->id, "/series", NULL);
-    if (path != NULL && connection_open(&second, watch->connection->server) == EXIT_DONE) {
-        const struct http_request request = {.method = "GET", .path = path};
-        if (connection_send(&second, &request, &reply, problem, sizeof problem) &&
-            reply.status == 200) {
-            json_t *answer = json_loadb(reply.body, reply.length, 0, NULL);
-            json_t *list = json_is_array(answer) ? answer : json_object_get(answer, "series");
-            json_array_foreach(list, index, series)
-            {
-                char name[96];
-                int component;
-                if (reaction_series_parse(json_text(series, "name"), name, sizeof name,
-                                          &component) &&
-                    json_text(series, "unit")[0] != '\0')
-                    (void)snprintf(watch->unit, sizeof watch->unit, "%s",
-                                   json_text(series, "unit"));
-            }
-            json_decref(answer);
-        }
-        http_reply_release(&reply);
-        connection_close(&second);
-    }
+    const bool open = connection_open(&second, watch->connection->server) == EXIT_DONE;
+    const struct http_request request = {.method = "GET", .path = path};
+    if (path != NULL && open &&
+        connection_send(&second, &request, &reply, problem, sizeof problem) && reply.status == 200)
+        take_unit(watch, &reply);
+    http_reply_release(&reply);
+    connection_close(&second);
     free(path);
 }
 
