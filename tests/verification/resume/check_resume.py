@@ -20,7 +20,7 @@ def scene():
                      "shear_modulus": 4e6,
                      "friction": {"a0": 35, "a1": 9, "a3": 0.3, "a4": 10, "strain_scale": 100}}},
         "bodies": [{"material": "sand", "box": {"min": [0, 0], "max": [1, 2]},
-                    "particles_per_cell": [2, 2], "initial_stress": {"geostatic": {"k0": "auto"}}}],
+                    "particles_per_cell": [3, 3], "initial_stress": {"geostatic": {"k0": "auto"}}}],
         "gravity": [0, -9.81],
         "boundaries": [
             {"name": "axis", "plane": {"point": [0, 0], "normal": [1, 0]}, "condition": "slip"},
