@@ -117,28 +117,15 @@ static void update_single(const struct run *run, const struct particle_block *bl
     run->materials[material].model->update_stress(run->materials[material].constants, &batch);
 }
 
-/* Compacts the slots of one material, runs it, and puts the results back. */
-static void update_compacted(const struct run *run, const struct particle_block *block,
-                             struct block_scratch *scratch, size_t material, double time_step)
+/* Copies the slots of one material side by side, and fills the last row with slots at rest. Returns
+ * the number of slots, a multiple of LANE_COUNT. */
+static size_t compact_slots(const struct run *run, const struct particle_block *block,
+                            struct block_scratch *scratch, size_t material,
+                            double *const history[SCRATCH_HISTORY_MAX])
 {
     const size_t slot_count = (size_t)block->row_count * LANE_COUNT;
     const size_t state_count = run->materials[material].model->state_count;
-    double *history[SCRATCH_HISTORY_MAX] = {NULL};
-    history_arrays(run, block, history);
     assert(state_count <= run->grid.layout.component_count[PARTICLE_HISTORY]);
-    struct material_batch batch = {.component_count = run->strain_components,
-                                   .time_step = time_step,
-                                   .volume_ratio = scratch->compact_volume_ratio,
-                                   .history = scratch->compact_history,
-                                   .plastic_strain = scratch->compact_plastic_strain,
-                                   .dissipation = scratch->compact_dissipation};
-    for (size_t component = 0; component < run->strain_components; component++) {
-        batch.strain[component] = scratch->compact_strain[component];
-        batch.rate[component] = scratch->compact_rate[component];
-        batch.stress[component] = scratch->compact_stress[component];
-    }
-    for (size_t component = 0; run->finite_strain && component < 3; component++)
-        batch.spin[component] = scratch->compact_spin[component];
     size_t used = 0;
     for (size_t slot = 0; slot < slot_count; slot++) {
         if (block->id[slot] == PARTICLE_NONE || material_of_slot(run, block, slot) != material)
@@ -153,8 +140,8 @@ static void update_compacted(const struct run *run, const struct particle_block 
             scratch->compact_history[index][used] = history[index][slot];
         scratch->compact_volume_ratio[used++] = scratch->volume_ratio[slot];
     }
-    batch.count = (used + LANE_COUNT - 1) / LANE_COUNT * LANE_COUNT;
-    for (size_t empty = used; empty < batch.count; empty++) {
+    const size_t count = (used + LANE_COUNT - 1) / LANE_COUNT * LANE_COUNT;
+    for (size_t empty = used; empty < count; empty++) {
         for (size_t component = 0; component < run->strain_components; component++)
             scratch->compact_strain[component][empty] = scratch->compact_rate[component][empty] = 0;
         for (size_t component = 0; component < 3; component++)
@@ -163,8 +150,16 @@ static void update_compacted(const struct run *run, const struct particle_block 
             scratch->compact_history[index][empty] = 0;
         scratch->compact_volume_ratio[empty] = 1;
     }
-    run->materials[material].model->update_stress(run->materials[material].constants, &batch);
-    used = 0;
+    return count;
+}
+
+/* The way back. */
+static void spread_slots(const struct run *run, const struct particle_block *block,
+                         struct block_scratch *scratch, size_t material,
+                         double *const history[SCRATCH_HISTORY_MAX])
+{
+    const size_t slot_count = (size_t)block->row_count * LANE_COUNT;
+    size_t used = 0;
     for (size_t slot = 0; slot < slot_count; slot++) {
         if (block->id[slot] == PARTICLE_NONE || material_of_slot(run, block, slot) != material)
             continue;
@@ -172,11 +167,35 @@ static void update_compacted(const struct run *run, const struct particle_block 
             scratch->strain[component][slot] = scratch->compact_strain[component][used];
             scratch->stress[component][slot] = scratch->compact_stress[component][used];
         }
-        for (size_t index = 0; index < state_count; index++)
+        for (size_t index = 0; index < run->materials[material].model->state_count; index++)
             history[index][slot] = scratch->compact_history[index][used];
         scratch->plastic_strain[slot] = scratch->compact_plastic_strain[used];
         scratch->dissipation[slot] = scratch->compact_dissipation[used++];
     }
+}
+
+/* Compacts the slots of one material, runs it, and puts the results back. */
+static void update_compacted(const struct run *run, const struct particle_block *block,
+                             struct block_scratch *scratch, size_t material, double time_step)
+{
+    double *history[SCRATCH_HISTORY_MAX] = {NULL};
+    history_arrays(run, block, history);
+    struct material_batch batch = {.count = compact_slots(run, block, scratch, material, history),
+                                   .component_count = run->strain_components,
+                                   .time_step = time_step,
+                                   .volume_ratio = scratch->compact_volume_ratio,
+                                   .history = scratch->compact_history,
+                                   .plastic_strain = scratch->compact_plastic_strain,
+                                   .dissipation = scratch->compact_dissipation};
+    for (size_t component = 0; component < run->strain_components; component++) {
+        batch.strain[component] = scratch->compact_strain[component];
+        batch.rate[component] = scratch->compact_rate[component];
+        batch.stress[component] = scratch->compact_stress[component];
+    }
+    for (size_t component = 0; run->finite_strain && component < 3; component++)
+        batch.spin[component] = scratch->compact_spin[component];
+    run->materials[material].model->update_stress(run->materials[material].constants, &batch);
+    spread_slots(run, block, scratch, material, history);
 }
 
 static void clear_results(const struct run *run, struct block_scratch *scratch, size_t count)

@@ -5,6 +5,8 @@
 
 static size_t allocation_count;
 
+/* The linker gives these their names.
+ * NOLINTBEGIN(bugprone-reserved-identifier,cert-dcl51-cpp,readability-identifier-naming) */
 void *__real_malloc(size_t size);
 void *__real_calloc(size_t count, size_t size);
 void *__real_realloc(void *memory, size_t size);
@@ -37,6 +39,8 @@ void *__wrap_aligned_alloc(size_t alignment, size_t size)
     allocation_count++;
     return __real_aligned_alloc(alignment, size);
 }
+
+/* NOLINTEND(bugprone-reserved-identifier,cert-dcl51-cpp,readability-identifier-naming) */
 
 /* A column that settles between walls. */
 static void build(struct simulation_fixture *fixture, const struct material *material, int64_t far)

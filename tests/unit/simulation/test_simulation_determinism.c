@@ -6,7 +6,7 @@
 static void build(struct simulation_fixture *fixture, const struct material *material, size_t axes)
 {
     static const int64_t count[3] = {48, 24, 8};
-    static const double min[3] = {0.4, 0.2, 0.2}, max[3] = {2.4, 1.2, 0.5};
+    static const double min[3] = {0.4, 0.2, 0.2}, max[3] = {2.4, 1.2, 0.3};
     simulation_fixture_init(fixture, axes, 0.1, count);
     const size_t index = simulation_fixture_add_sample(fixture, material);
     struct talus_body *body = simulation_fixture_add_box(fixture, index, min, max, 2);
