@@ -254,17 +254,5 @@ void contact_hold_back(const struct wall_face *faces, const struct node_faces *n
     memcpy(contact.free_velocity, increment, sizeof contact.free_velocity);
     memcpy(contact.acceleration_increment, increment, sizeof contact.acceleration_increment);
     contact_solve(&contact);
-    /* What sticks is held back as a whole; what slides keeps its whole tangential increment. */
-    bool active[NODE_FACE_MAX] = {false};
-    double basis[3][3], taken[3], share[NODE_FACE_MAX];
-    size_t held = 0;
-    if (is_held(&contact, &held)) {
-        memset(increment, 0, 3 * sizeof *increment);
-        return;
-    }
-    const size_t rank = find_active(&contact, increment, active, basis, taken, share);
-    const bool sticks = dot(contact.velocity, contact.velocity) == 0;
-    (void)rank;
-    for (size_t axis = 0; axis < 3; axis++)
-        increment[axis] = sticks ? 0 : increment[axis] - taken[axis];
+    memcpy(increment, contact.velocity, sizeof contact.velocity);
 }

@@ -26,7 +26,9 @@ struct contact {
 void contact_solve(struct contact *contact);
 
 /* The part of dt f/m that a node with these faces passes to its particles before the walls are
- * applied: constrained components are held back, so that a stiff body on a floor stays calm. */
+ * applied: the velocity that the walls would leave a node at rest under it. Constrained components,
+ * and what friction can hold, are held back: a stiff body on a floor stays calm, and nodes may pass
+ * from sticking to sliding and back without a jump that would feed energy to the particles. */
 void contact_hold_back(const struct wall_face *faces, const struct node_faces *node, double mass,
                        double time_step, double increment[3]);
 

@@ -244,6 +244,7 @@ enum talus_status talus_simulation_audit(struct talus_simulation *simulation,
     return talus_error_set(
         error, TALUS_AUDIT, "audit", "",
         "mass error %.3g (limit 1e-12), momentum error %.3g (limit 1e-9), energy "
-        "growth %.3g (limit %.3g) of the energy turned over",
+        "growth %.3g (limit %.3g) of the energy turned over; if energy has grown, try a smaller "
+        "courant or time_step, viscous_damping, or a pic_rate",
         mass, momentum, growth, limit);
 }

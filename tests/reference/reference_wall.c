@@ -77,21 +77,10 @@ void reference_contact_solve(const struct reference_wall *walls, int wall_count,
 void reference_hold_back(const struct reference_wall *walls, int wall_count, const bool *active,
                          double mass, double time_step, double increment[3])
 {
-    /* A node at rest under this increment alone: what it cannot follow is held back. Sliding
-     * friction is left to the walls themselves. */
+    /* A node at rest under this increment alone: what it cannot follow is held back. */
     struct reference_contact contact;
     memcpy(contact.free_velocity, increment, sizeof contact.free_velocity);
     memcpy(contact.increment, increment, sizeof contact.increment);
     reference_contact_solve(walls, wall_count, active, mass, time_step, &contact);
-    bool moves = false;
-    for (int axis = 0; axis < 3; axis++)
-        moves = moves || contact.velocity[axis] != 0;
-    for (int k = 0; k < wall_count; k++) {
-        const int axis = walls[k].axis;
-        const double push = -mass * increment[axis] * walls[k].normal;
-        if (active[k] && !(walls[k].releases && push <= walls[k].tension_force * time_step))
-            increment[axis] = 0;
-    }
-    for (int axis = 0; axis < 3 && !moves; axis++)
-        increment[axis] = 0;
+    memcpy(increment, contact.velocity, sizeof contact.velocity);
 }

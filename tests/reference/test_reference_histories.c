@@ -263,7 +263,8 @@ static void run_material(const struct material *material)
         assert_true(c.position <= AGREEMENT);
         if (variants[index].motion == SLIDE && STEPS >= 1000)
             assert_true(c.crossings > 0);
-        if (material->plastic && STEPS >= 1000)
+        /* Columns and bars yield; a block that slides calmly need not. */
+        if (material->plastic && variants[index].motion != SLIDE && STEPS >= 1000)
             assert_true(c.plastic > 1e-6);
     }
 }

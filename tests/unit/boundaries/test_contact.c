@@ -290,13 +290,13 @@ static void test_hold_back(void **state)
     add_face(&bench, 0, 1, 0, "slip", 0);
     contact_hold_back(bench.faces, &bench.node, 1.0, 0.01, increment);
     assert_vector(increment, 1, 0, 0.5, 0);
-    /* Friction that holds this increment holds all of it back, else none of its tangent. */
+    /* Friction holds back what it can hold: all of the tangent, or its limit of 0.8. */
     for (int strong = 0; strong < 2; strong++) {
         double pushed[3] = {1, -2, 0};
         bench_init(&bench, 1.0, pushed);
         add_face(&bench, 0, 1, 0, "friction", strong ? 0.6 : 0.4);
         contact_hold_back(bench.faces, &bench.node, 1.0, 0.01, pushed);
-        assert_vector(pushed, strong ? 0 : 1, 0, 0, 0);
+        assert_vector(pushed, strong ? 0 : 0.2, 0, 0, 1e-15);
     }
     double lifted[3] = {1, 2, 0};
     bench_init(&bench, 1.0, lifted);
