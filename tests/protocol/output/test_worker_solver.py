@@ -100,12 +100,15 @@ class SolverTest(worker_run.RunTest):
     def test_killed_and_resumed(self):
         # Sanitizers make a run several times slower.
         killed, most = (scene(duration=0.1), 3) if SANITIZED else (SCENE, 10)
+        begin = time.monotonic()
         self.run_job(killed, "whole")
+        whole = time.monotonic() - begin
         moments = random.Random(20261122)
         kills, options = 0, []
         while kills < most:
             process = self.start(killed, "job", *options)
-            time.sleep(moments.uniform(0.05, 0.4))
+            # Shares of a whole run, so that a fast machine is interrupted as often as a slow one.
+            time.sleep(moments.uniform(0.1, 0.5) * whole)
             process.send_signal(signal.SIGKILL)
             process.communicate()
             if process.returncode == 0:
