@@ -359,7 +359,10 @@ static void finish_record(struct run *run, struct wall_record *record, struct pe
         record->interval_impulse[axis] += record->step_impulse[axis];
         record->interval_moment[axis] += record->step_moment[axis];
     }
-    book_window(record, window, run->time + run->time_step, run->time_step, window_length);
+    /* A fixed step that is cut short at the end must not pass for a peak (time_step.c). */
+    book_window(record, window, run->time + run->time_step,
+                fmax(run->time_step, fmin(run->last_time_step, run->scene.solver.time_step)),
+                window_length);
 }
 
 static void clear_step(struct wall_record *record)

@@ -7,6 +7,9 @@
 
 /* Shorter remainders than this share of a step are given to the last step. */
 #define REMAINDER 1e-9
+/* Automatic steps share the remainder among this many last ones: walls take impulses that do not
+ * shrink with the step, so a very short last step would read as a peak of force. */
+#define LAST_STEPS 10
 
 static double viscous_limit(const struct run *run, double width)
 {
@@ -41,7 +44,10 @@ void run_choose_time_step(struct run *run)
     run->critical_time_step = run_critical_time_step(run, run->largest_speed);
     const double fixed = run->scene.solver.time_step;
     double step = fixed > 0 ? fixed : run->scene.solver.courant * run->critical_time_step;
-    if (step * (1 + REMAINDER) >= remaining)
+    const double count = ceil(remaining / step * (1 - REMAINDER));
+    if (count <= 1)
         step = fmax(remaining, 0);
+    else if (fixed <= 0 && count <= LAST_STEPS)
+        step = remaining / count;
     run->time_step = step;
 }
