@@ -13,6 +13,7 @@
 #include <string.h>
 #include <sys/stat.h>
 #include <sys/syscall.h>
+#include <time.h>
 #include <unistd.h>
 
 static enum talus_status folder_error(struct talus_error *error, const char *action,
@@ -99,9 +100,17 @@ static int remove_entry(const char *path, const struct stat *information, int ki
 
 enum talus_status folder_remove(const char *path, struct talus_error *error)
 {
-    if (nftw(path, remove_entry, 16, FTW_DEPTH | FTW_PHYS) != 0 && errno != ENOENT)
-        return folder_error(error, "remove", path);
-    return TALUS_OK;
+    /* A helper or a worker that is just ending may put another file there meanwhile. */
+    enum { ATTEMPTS = 100 };
+    const struct timespec pause = {.tv_nsec = 10 * 1000 * 1000};
+    for (int attempt = 0; attempt < ATTEMPTS; attempt++) {
+        if (nftw(path, remove_entry, 16, FTW_DEPTH | FTW_PHYS) == 0 || errno == ENOENT)
+            return TALUS_OK;
+        if (errno != ENOTEMPTY && errno != EEXIST)
+            break;
+        (void)nanosleep(&pause, NULL);
+    }
+    return folder_error(error, "remove", path);
 }
 
 static bool component_public(const char *component, size_t length)
