@@ -97,7 +97,7 @@ struct run {
     struct sparse_grid grid;
     struct run_material *materials; /* [scene.material_count] owned */
     uint16_t *body_material;        /* [scene.body_count] owned */
-    bool finite_strain, any_volumetric, any_tensor, any_plastic, any_rate, any_spin;
+    bool finite_strain, any_volumetric, any_tensor, any_plastic, any_spin;
     size_t strain_components; /* that the materials see: 3, 4 or 6 */
     size_t
         stored_components; /* of PARTICLE_STRAIN: the same, or 1 if all materials are volumetric */
@@ -131,7 +131,6 @@ struct run {
     double mass_cutoff;       /* nodes lighter than this carry no motion [kg] */
     double reference_density; /* smallest of the scene, for contact areas [kg/m^3] */
     bool over_critical_warned, failed;
-    uint64_t warning_state;
 
     struct run_energy energy;
     struct run_audit audit;

@@ -103,7 +103,6 @@ static enum talus_status build_materials(struct run *run, struct talus_error *er
         run->any_volumetric = run->any_volumetric || material->model->volumetric;
         run->any_tensor = run->any_tensor || !material->model->volumetric;
         run->any_plastic = run->any_plastic || material->model->plastic;
-        run->any_rate = run->any_rate || material->model->needs_rate;
         run->any_spin = run->any_spin || material->model->needs_spin;
         run->reference_density = fmin(run->reference_density, material->density);
     }
