@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* One time step: the passes over tiles and nodes in their order. */
 #include "explicit/run.h"
+#include "explicit/stage_clock.h"
 #include "health/health.h"
 #include "math/sticky.h"
 
@@ -50,32 +51,41 @@ static void partition_outbox(struct run *run)
     }
 }
 
-static void kick_tile(struct run *run, const struct tile *tile)
+static void kick_tile(struct run *run, const struct tile *tile, struct stage_clock *clock)
 {
     const struct shape_context context = run_shape_context(run);
+    stage_clock_lap(clock, STAGE_WAIT);
     for (size_t entry = tile->begin; entry < tile->end; entry++)
         run->kernels->kick(&context, &run->grid.blocks[run->grid.tile_blocks[entry]]);
+    stage_clock_lap(clock, STAGE_FIRST_PASS);
 }
 
 static void advance_tile(struct run *run, size_t index, struct block_scratch *scratch, bool still)
 {
     struct tile *tile = &run->grid.tiles[index];
     struct tile_sums *sums = &run->tile_sums[index];
+    stage_clock_lap(scratch->clock, STAGE_WAIT);
     memset(sums, 0, sizeof *sums);
     sums->least_jacobian = 1.0;
     sums->bad_particle = PARTICLE_NONE;
     for (size_t entry = tile->begin; entry < tile->end; entry++)
         run_advance_block(run, scratch, run->grid.tile_blocks[entry], tile, sums, still);
+    stage_clock_lap(scratch->clock, STAGE_SECOND_PASS);
 }
 
 static void first_pass(struct run *run)
 {
 #pragma omp parallel num_threads(run->threads) if (run->threads > 1)
-    for (size_t colour = 0; colour < TILE_COLOURS; colour++) {
+    {
+        struct stage_clock *clock = run->scratch[omp_get_thread_num()].clock;
+        stage_clock_start(clock);
+        for (size_t colour = 0; colour < TILE_COLOURS; colour++) {
 #pragma omp for schedule(dynamic, 1)
-        for (size_t index = run->grid.colour_begin[colour];
-             index < run->grid.colour_begin[colour + 1]; index++)
-            kick_tile(run, &run->grid.tiles[index]);
+            for (size_t index = run->grid.colour_begin[colour];
+                 index < run->grid.colour_begin[colour + 1]; index++)
+                kick_tile(run, &run->grid.tiles[index], clock);
+        }
+        stage_clock_lap(clock, STAGE_WAIT);
     }
 }
 
@@ -84,12 +94,14 @@ static void second_pass(struct run *run, bool still)
 #pragma omp parallel num_threads(run->threads) if (run->threads > 1)
     {
         struct block_scratch *scratch = &run->scratch[omp_get_thread_num()];
+        stage_clock_start(scratch->clock);
         for (size_t colour = 0; colour < TILE_COLOURS; colour++) {
 #pragma omp for schedule(dynamic, 1)
             for (size_t index = run->grid.colour_begin[colour];
                  index < run->grid.colour_begin[colour + 1]; index++)
                 advance_tile(run, index, scratch, still);
         }
+        stage_clock_lap(scratch->clock, STAGE_WAIT);
     }
 }
 
@@ -108,19 +120,30 @@ static struct tile_sums sum_tiles(const struct run *run)
     return total;
 }
 
+static void count_crossers(const struct run *run, struct stage_clock *clock)
+{
+    for (size_t index = 0; clock != NULL && index < run->grid.tile_count; index++)
+        clock->crossers += run->grid.tiles[index].outbox_count;
+}
+
 enum talus_status run_take_step(struct run *run, struct talus_error *error)
 {
+    struct stage_clock *clock = run->scratch[0].clock;
+    stage_clock_start(clock);
     enum talus_status status = run_purge(run, error);
     if (status != TALUS_OK) {
         run->failed = true;
         return status;
     }
     partition_outbox(run);
+    stage_clock_lap(clock, STAGE_HOUSEKEEPING);
     if (run->scene.solver.stress_update == TALUS_STRESS_MODIFIED_LAST) {
         run_kick_nodes(run);
+        stage_clock_lap(clock, STAGE_KICK_NODES);
         first_pass(run);
     }
     run_update_nodes(run);
+    stage_clock_lap(clock, STAGE_UPDATE_NODES);
     second_pass(run, false);
     run->time += run->time_step;
     run->interval += run->time_step;
@@ -129,14 +152,19 @@ enum talus_status run_take_step(struct run *run, struct talus_error *error)
     const struct tile_sums sums = sum_tiles(run);
     run->energy.plastic += sums.plastic_energy;
     run->energy.viscous += sums.viscous_energy;
+    count_crossers(run, clock);
+    stage_clock_lap(clock, STAGE_HOUSEKEEPING);
     status = run_rebin(run, error);
+    stage_clock_lap(clock, STAGE_REBIN);
     if (status == TALUS_OK)
         status = health_check_step(run, &sums, error);
+    stage_clock_lap(clock, STAGE_ENERGY_CHECK);
     if (status != TALUS_OK) {
         run->failed = true;
         return status;
     }
     run_choose_time_step(run);
+    stage_clock_lap(clock, STAGE_TIME_STEP);
     return TALUS_OK;
 }
 

@@ -8,8 +8,11 @@
 
 enum { SCRATCH_HISTORY_MAX = 16 };
 
+struct stage_clock; /* explicit/stage_clock.h */
+
 struct block_scratch {
-    size_t capacity; /* slots */
+    struct stage_clock *clock; /* of the thread, the caller's; NULL: off */
+    size_t capacity;           /* slots */
     size_t bad_slot; /* where the last block had a det f <= 0, or NAN; kinematics sets it then */
     void *memory;    /* owned; every array below lies in it, aligned to 64 bytes */
     /* gather writes */
