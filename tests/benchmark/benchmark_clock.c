@@ -1,0 +1,61 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+#include "benchmark_clock.h"
+
+#include "explicit/stage_clock.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <time.h>
+
+static double seconds_of(clockid_t clock)
+{
+    struct timespec now = {0};
+    (void)clock_gettime(clock, &now);
+    return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
+}
+
+double benchmark_thread_seconds(void)
+{
+    return seconds_of(CLOCK_THREAD_CPUTIME_ID);
+}
+
+double benchmark_wall_seconds(void)
+{
+    return seconds_of(CLOCK_MONOTONIC);
+}
+
+void benchmark_calibrate(double *nanoseconds_per_tick, double *nanoseconds_per_lap)
+{
+    enum { LAPS = 100000 };
+    struct stage_clock clock = {0};
+    const double begin = benchmark_wall_seconds();
+    const uint64_t first = stage_clock_read();
+    while (benchmark_wall_seconds() - begin < 0.02) {
+    }
+    *nanoseconds_per_tick =
+        1e9 * (benchmark_wall_seconds() - begin) / (double)(stage_clock_read() - first);
+    const double start = benchmark_thread_seconds();
+    stage_clock_start(&clock);
+    for (int lap = 0; lap < LAPS; lap++)
+        stage_clock_lap(&clock, STAGE_WAIT);
+    *nanoseconds_per_lap = 1e9 * (benchmark_thread_seconds() - start) / LAPS;
+}
+
+static int compare(const void *a, const void *b)
+{
+    const double left = *(const double *)a, right = *(const double *)b;
+    return (left > right) - (left < right);
+}
+
+void benchmark_sort(double *values, size_t count)
+{
+    qsort(values, count, sizeof *values, compare);
+}
+
+double benchmark_quantile(const double *sorted, size_t count, double share)
+{
+    const double place = share * (double)(count - 1);
+    const size_t low = (size_t)floor(place);
+    const size_t high = low + 1 < count ? low + 1 : low;
+    return sorted[low] + (place - (double)low) * (sorted[high] - sorted[low]);
+}

@@ -1,0 +1,47 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+#include "benchmark_report.h"
+
+#include "benchmark_isa.h"
+
+#include <stdio.h>
+
+static const char *const stage_names[STAGE_COUNT] = {
+#define STAGE(ENUM, name) #name,
+    TALUS_STAGES(STAGE)
+#undef STAGE
+};
+
+static void print_stages(const struct benchmark_result *result)
+{
+    double sum = 0;
+    for (size_t stage = 0; stage < STAGE_COUNT; stage++)
+        sum += result->stage_nanoseconds[stage];
+    for (size_t stage = 0; stage < STAGE_COUNT; stage++) {
+        if (result->stage_nanoseconds[stage] > 0)
+            (void)printf("  %-14s %9.3f ns  %5.1f %%\n", stage_names[stage],
+                         result->stage_nanoseconds[stage],
+                         100.0 * result->stage_nanoseconds[stage] / sum);
+    }
+    (void)printf("  %-14s %9.3f ns; the clock itself adds %.1f %%, taken off above\n", "sum", sum,
+                 100.0 * result->clock_share);
+}
+
+void benchmark_report_one(const struct benchmark_setup *setup,
+                          const struct benchmark_result *result)
+{
+    (void)printf("%s, %s body, %s, anti-locking %s, %zu particles (%zu per cell and axis), "
+                 "%d thread%s, domain %g, %s\n",
+                 setup->subject->name, benchmark_body_name(setup->body),
+                 setup->last ? "last" : "modified_last", setup->cell ? "cell" : "none",
+                 result->particles, setup->per_axis, setup->threads, setup->threads == 1 ? "" : "s",
+                 setup->domain_factor, benchmark_isa());
+    (void)printf("rate %.3f million particle-steps/s per core (best %.3f, quartiles %.3f %.3f): "
+                 "%.2f ns\n",
+                 1e3 / result->nanoseconds, 1e3 / result->fastest, 1e3 / result->quartile_high,
+                 1e3 / result->quartile_low, result->nanoseconds);
+    (void)printf("step %.4g s, %.4g simulated s per s; bytes per particle %.0f stored, %.0f with "
+                 "the grid; lane fill %.3f; crossings %.5f; plastic work %.3g; mass error %.1g\n",
+                 result->time_step, result->simulated, result->bytes_stored, result->bytes_grid,
+                 result->lane_fill, result->crossings, result->plastic_work, result->mass_error);
+    print_stages(result);
+}
