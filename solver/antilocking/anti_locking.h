@@ -6,10 +6,12 @@
 #ifndef TALUS_ANTI_LOCKING_H
 #define TALUS_ANTI_LOCKING_H
 
+#include "math/real.h"
+
 #include <stddef.h>
 
 /* values[count] <- weighted mean over the rows of each lane; lanes without weight keep theirs.
  * weight 0 marks slots that take no part (empty, or another material): they stay as they are. */
-void cell_average(size_t count, const double *weight, double *values);
+void cell_average(size_t count, const real *weight, real *values);
 
 #endif

@@ -1,62 +1,51 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* The second pass: one block from gather to scatter, stage by stage through scratch. */
+#include "antilocking/anti_locking.h"
 #include "explicit/kinematics.h"
 #include "explicit/material_stage.h"
 #include "explicit/run.h"
+#include "explicit/stage_clock.h"
 #include "math/sticky.h"
 
+#include <assert.h>
 #include <math.h>
 #include <string.h>
-
-static void clear_gradient(const struct run *run, struct block_scratch *scratch, size_t count)
-{
-    for (size_t component = 0; component < 9; component++)
-        memset(scratch->gradient[component], 0, count * sizeof(double));
-    for (size_t axis = 0; axis < run->grid.domain.axis_count; axis++)
-        memset(scratch->velocity[axis], 0, count * sizeof(double));
-}
 
 /* The PIC share of a step, 1 - exp(-lambda dt), independent of the step. */
 static void blend_velocity(const struct run *run, const struct particle_block *block,
                            const struct block_scratch *scratch, size_t count)
 {
-    const double share = -expm1(-run->scene.solver.pic_rate * run->time_step);
+    const real share = (real)-expm1(-run->scene.solver.pic_rate * run->time_step);
     for (uint32_t axis = 0; axis < run->grid.domain.axis_count; axis++) {
-        double *velocity = particle_values(&run->grid.layout, block, PARTICLE_VELOCITY, axis);
-        for (size_t i = 0; i < count; i++)
-            velocity[i] += share * (scratch->velocity[axis][i] - velocity[i]);
+        real *velocity = particle_values(&run->grid.layout, block, PARTICLE_VELOCITY, axis);
+        const real speed = (real)(run->grid.domain.cell[axis] / run->time_step);
+        for (size_t slot = 0; slot < count; slot++)
+            velocity[slot] += share * (speed * scratch->displacement[axis][slot] - velocity[slot]);
     }
 }
 
-/* Bulk viscosity of the damping: sigma = C rho h c_b tr d on the diagonal, in the nodal forces only
- * (Mast 2013, sec. B.2.3 names the option without its formula; this is the usual linear one). */
-static void force_stresses(const struct run *run, const struct particle_block *block,
-                           struct block_scratch *scratch, size_t count, struct tile_sums *sums)
+static void record_displacement(const struct run *run, const struct particle_block *block,
+                                const struct block_scratch *scratch, size_t count)
 {
-    const double damping = run->scene.solver.viscous_damping;
-    const double width = domain_smallest_cell(&run->grid.domain);
-    double plastic = 0, viscous = 0;
-    for (size_t component = 0; component < run->strain_components; component++) {
-        const double *restrict stress = scratch->stress[component];
-        double *restrict out = scratch->force_stress[component];
-        const double *restrict volume = scratch->reference_volume;
-#pragma omp simd
-        for (size_t i = 0; i < count; i++)
-            out[i] = volume[i] * stress[i];
+    const struct particle_layout *layout = &run->grid.layout;
+    for (uint32_t axis = 0; axis < layout->component_count[PARTICLE_DISPLACEMENT]; axis++) {
+        real *displacement = particle_values(layout, block, PARTICLE_DISPLACEMENT, axis);
+        const real width = (real)run->grid.domain.cell[axis];
+        for (size_t slot = 0; slot < count; slot++)
+            displacement[slot] += width * scratch->displacement[axis][slot];
     }
-    for (size_t i = 0; damping > 0 && i < count; i++) {
-        const struct run_material *material = &run->materials[material_of_slot(run, block, i)];
-        const double viscosity = damping * material->density * width * material->bulk_speed;
-        const double q = scratch->reference_volume[i] * viscosity * scratch->divergence[i];
-        for (size_t component = 0; component < 3; component++)
-            scratch->force_stress[component][i] += q;
-        viscous += q * scratch->divergence[i] * run->time_step;
-    }
-    /* Plain order: the sum must not depend on the vector width. */
-    for (size_t i = 0; i < count; i++)
-        plastic += scratch->reference_volume[i] * scratch->dissipation[i];
-    sums->plastic_energy += plastic;
-    sums->viscous_energy += viscous;
+}
+
+/* What the material has dissipated; summed by lanes, so that the sum does not depend on the vector
+ * width. */
+static void book_dissipation(const struct block_scratch *scratch, size_t count,
+                             struct tile_sums *sums)
+{
+    lanes sum = {0};
+    for (size_t slot = 0; slot < count; slot += LANE_COUNT)
+        sum +=
+            lanes_load(scratch->reference_volume + slot) * lanes_load(scratch->dissipation + slot);
+    sums->plastic_energy += (double)lanes_sum(sum);
 }
 
 static void record_fields(const struct run *run, const struct particle_block *block,
@@ -65,40 +54,93 @@ static void record_fields(const struct run *run, const struct particle_block *bl
     const struct particle_layout *layout = &run->grid.layout;
     for (uint32_t component = 0; component < layout->component_count[PARTICLE_STRESS]; component++)
         memcpy(particle_values(layout, block, PARTICLE_STRESS, component),
-               scratch->stress[component], count * sizeof(double));
-    if (layout->component_count[PARTICLE_PLASTIC_STRAIN] > 0) {
-        double *total = particle_values(layout, block, PARTICLE_PLASTIC_STRAIN, 0);
-        for (size_t i = 0; i < count; i++)
-            total[i] += scratch->plastic_strain[i];
-    }
-    for (uint32_t axis = 0; axis < layout->component_count[PARTICLE_DISPLACEMENT]; axis++) {
-        double *displacement = particle_values(layout, block, PARTICLE_DISPLACEMENT, axis);
-        for (size_t i = 0; i < count; i++)
-            displacement[i] += run->time_step * scratch->velocity[axis][i];
-    }
+               scratch->stress[component], count * sizeof(real));
+    if (layout->component_count[PARTICLE_PLASTIC_STRAIN] == 0)
+        return;
+    real *total = particle_values(layout, block, PARTICLE_PLASTIC_STRAIN, 0);
+    for (size_t slot = 0; slot < count; slot += LANE_COUNT)
+        lanes_store(total + slot,
+                    lanes_load(total + slot) + lanes_load(scratch->plastic_strain + slot));
 }
 
-/* Moves the particles with the grid velocity; returns the largest |relative position|. NAN passes
- * through, so that health can find it. */
-static double move(const struct run *run, const struct particle_block *block,
-                   const struct block_scratch *scratch, size_t count)
+static bool has_yielded(const struct block_scratch *scratch, size_t count)
 {
-    lanes largest = {0};
-    for (uint32_t axis = 0; axis < run->grid.domain.axis_count; axis++) {
-        double *position = particle_values(&run->grid.layout, block, PARTICLE_POSITION, axis);
-        const double scale = run->time_step * run->grid.domain.inverse_cell[axis];
-        for (size_t i = 0; i < count; i += LANE_COUNT) {
-            const lanes x =
-                lanes_load(position + i) + scale * lanes_load(scratch->velocity[axis] + i);
-            lanes_store(position + i, x);
-            const lanes size = lanes_absolute(x);
-            largest = lanes_sticky_maximum(largest, size);
-        }
+    lane_mask yielded = {0};
+    for (size_t slot = 0; slot < count; slot += LANE_COUNT)
+        yielded |= lanes_load(scratch->plastic_strain + slot) > 0;
+    return lanes_any(yielded);
+}
+
+static void source_init(const struct run *run, const struct particle_block *block,
+                        const struct block_scratch *scratch, struct scatter_source *source)
+{
+    source->mass = particle_values(&run->grid.layout, block, PARTICLE_MASS, 0);
+    source->volume = scratch->reference_volume;
+    for (size_t component = 0; component < 6; component++)
+        source->stress[component] = scratch->stress[component];
+}
+
+/* Bulk viscosity of the damping: sigma = C rho h c_b tr d on the diagonal, in the nodal forces only
+ * (Mast 2013, sec. B.2.3 names the option without its formula; this is the usual linear one). */
+static void damp_bulk(const struct run *run, const struct particle_block *block,
+                      struct block_scratch *scratch, size_t count, struct scatter_source *source,
+                      struct tile_sums *sums)
+{
+    const double strength =
+        run->scene.solver.viscous_damping * domain_smallest_cell(&run->grid.domain);
+    real *divergence = scratch->mean;
+    double viscous = 0;
+    for (size_t slot = 0; slot < count; slot++)
+        divergence[slot] = scratch->rate[0][slot] + scratch->rate[1][slot] + scratch->rate[2][slot];
+    if (run->scene.solver.anti_locking == TALUS_CONTROL_CELL)
+        cell_average(count, source->mass, divergence);
+    for (size_t slot = 0; slot < count; slot++) {
+        const struct run_material *material = &run->materials[material_of_slot(run, block, slot)];
+        const real viscosity = (real)(strength * material->density * material->bulk_speed);
+        const real q = viscosity * divergence[slot];
+        for (size_t axis = 0; axis < 3; axis++)
+            scratch->damped_stress[axis][slot] = scratch->stress[axis][slot] + q;
+        viscous += (double)(scratch->reference_volume[slot] * q * divergence[slot]);
     }
-    double result = 0;
-    for (size_t lane = 0; lane < LANE_COUNT; lane++)
-        result = sticky_maximum(result, largest[lane]);
-    return result;
+    for (size_t axis = 0; axis < 3; axis++)
+        source->stress[axis] = scratch->damped_stress[axis];
+    sums->viscous_energy += viscous * run->time_step;
+}
+
+/* Largest |relative position| and squared speed of a block after the move. */
+struct reach {
+    double position, speed_squared;
+};
+
+/* Moves the particles by their displacements. What is not a number passes through into the result,
+ * so that health can find it. */
+static struct reach move(const struct run *run, const struct particle_block *block,
+                         const struct block_scratch *scratch, size_t count)
+{
+    const size_t axes = run->grid.domain.axis_count;
+    real *position[3], *velocity[3];
+    lanes farthest = {0}, fastest = {0}, poison = {0};
+    assert(axes <= 3);
+    for (uint32_t axis = 0; axis < axes; axis++) {
+        position[axis] = particle_values(&run->grid.layout, block, PARTICLE_POSITION, axis);
+        velocity[axis] = particle_values(&run->grid.layout, block, PARTICLE_VELOCITY, axis);
+    }
+    for (size_t slot = 0; slot < count; slot += LANE_COUNT) {
+        lanes square = {0};
+        for (size_t axis = 0; axis < axes; axis++) {
+            const lanes x =
+                lanes_load(position[axis] + slot) + lanes_load(scratch->displacement[axis] + slot);
+            const lanes v = lanes_load(velocity[axis] + slot);
+            lanes_store(position[axis] + slot, x);
+            farthest = lanes_maximum(farthest, lanes_absolute(x));
+            square += v * v;
+            poison += x * 0;
+        }
+        fastest = lanes_maximum(fastest, square);
+        poison += square * 0;
+    }
+    return (struct reach){.position = (double)lanes_largest(farthest + poison),
+                          .speed_squared = (double)lanes_largest(fastest + poison)};
 }
 
 static bool is_eliminated(const struct run *run, const struct particle_block *block, size_t slot)
@@ -114,51 +156,91 @@ static bool is_eliminated(const struct run *run, const struct particle_block *bl
     return wall_set_eliminates(&run->walls, position, block->body == NULL ? 0 : block->body[slot]);
 }
 
+static void collect_slot(struct run *run, const struct particle_block *block, uint32_t block_index,
+                         struct block_scratch *scratch, size_t slot,
+                         const struct scatter_source *source, struct tile *tile)
+{
+    bool inside = true;
+    for (uint32_t axis = 0; axis < run->grid.domain.axis_count; axis++)
+        inside =
+            inside && real_absolute(particle_values(&run->grid.layout, block, PARTICLE_POSITION,
+                                                    axis)[slot]) <= (real)0.5;
+    const bool eliminated = block->eliminates && is_eliminated(run, block, slot);
+    if (inside && !eliminated)
+        return;
+    struct outbox_record *record = &run->outbox[tile->outbox_begin + tile->outbox_count++];
+    record->block = block_index;
+    record->slot = (uint32_t)slot;
+    record->eliminated = eliminated;
+    memset(record->force_stress, 0, sizeof record->force_stress);
+    for (size_t component = 0; component < run->strain_components; component++)
+        record->force_stress[component] =
+            scratch->reference_volume[slot] * source->stress[component][slot];
+    scratch->reference_volume[slot] = 0;
+    scratch->mass[slot] = 0;
+}
+
+/* Slots of a row that reach beyond their cells. */
+static bool row_leaves(const struct run *run, const struct particle_block *block, size_t slot)
+{
+    lane_mask outside = {0};
+    for (uint32_t axis = 0; axis < run->grid.domain.axis_count; axis++)
+        outside |=
+            ~(lanes_absolute(lanes_load(
+                  particle_values(&run->grid.layout, block, PARTICLE_POSITION, axis) + slot)) <=
+              (real)0.5);
+    return lanes_any(outside);
+}
+
 /* Puts the particles that left their cells into the outbox; they scatter after they have moved. */
 static void collect_crossers(struct run *run, const struct particle_block *block,
                              uint32_t block_index, struct block_scratch *scratch, size_t count,
-                             struct tile *tile)
+                             struct scatter_source *source, struct tile *tile)
 {
-    for (size_t slot = 0; slot < count; slot++) {
-        if (block->id[slot] == PARTICLE_NONE)
+    memcpy(scratch->mass, source->mass, count * sizeof(real));
+    source->mass = scratch->mass;
+    for (size_t row = 0; row < count; row += LANE_COUNT) {
+        if (!block->eliminates && !row_leaves(run, block, row))
             continue;
-        bool inside = true;
-        for (uint32_t axis = 0; axis < run->grid.domain.axis_count; axis++)
-            inside = inside && fabs(particle_values(&run->grid.layout, block, PARTICLE_POSITION,
-                                                    axis)[slot]) <= 0.5;
-        const bool eliminated = block->eliminates && is_eliminated(run, block, slot);
-        if (inside && !eliminated)
-            continue;
-        struct outbox_record *record = &run->outbox[tile->outbox_begin + tile->outbox_count++];
-        record->block = block_index;
-        record->slot = (uint32_t)slot;
-        record->eliminated = eliminated;
-        memset(record->force_stress, 0, sizeof record->force_stress);
-        for (size_t component = 0; component < run->strain_components; component++) {
-            record->force_stress[component] = scratch->force_stress[component][slot];
-            scratch->force_stress[component][slot] = 0;
+        for (size_t slot = row; slot < row + LANE_COUNT; slot++) {
+            if (block->id[slot] != PARTICLE_NONE)
+                collect_slot(run, block, block_index, scratch, slot, source, tile);
         }
-        scratch->mass[slot] = 0;
     }
 }
 
-static double largest_speed_squared(const struct run *run, const struct particle_block *block,
-                                    size_t count)
+/* Gathers, and returns the trial strains; `still` takes the state as it is. */
+static void strain_block(struct run *run, struct block_scratch *scratch,
+                         struct particle_block *block, struct tile_sums *sums, bool still)
 {
-    lanes largest = {0};
-    for (size_t i = 0; i < count; i += LANE_COUNT) {
-        lanes square = {0};
-        for (uint32_t axis = 0; axis < run->grid.domain.axis_count; axis++) {
-            const lanes v =
-                lanes_load(particle_values(&run->grid.layout, block, PARTICLE_VELOCITY, axis) + i);
-            square += v * v;
-        }
-        largest = lanes_sticky_maximum(largest, square);
-    }
-    double result = 0;
-    for (size_t lane = 0; lane < LANE_COUNT; lane++)
-        result = sticky_maximum(result, largest[lane]);
-    return result;
+    const double time_step = still ? 0.0 : run->time_step;
+    const struct shape_context context = run_shape_context(run, time_step);
+    const size_t count = (size_t)block->row_count * LANE_COUNT;
+    const bool corrects = run->scene.solver.stress_update == TALUS_STRESS_LAST ||
+                          block->constrained || run->scene.solver.local_damping > 0;
+    run->kernels->gather(&context, block, corrects && !still, scratch);
+    if (run->scene.solver.pic_rate > 0 && !still)
+        blend_velocity(run, block, scratch, count);
+    record_displacement(run, block, scratch, count);
+    stage_clock_lap(scratch->clock, STAGE_GATHER);
+    const double jacobian = kinematics_advance(run, block, scratch, time_step);
+    if (!(jacobian > 0) && sums->bad_particle == PARTICLE_NONE)
+        sums->bad_particle = block->id[scratch->bad_slot];
+    sums->least_jacobian = sticky_minimum(sums->least_jacobian, jacobian);
+    stage_clock_lap(scratch->clock, STAGE_KINEMATICS);
+}
+
+/* Stress out of the trial strains, and what it leaves behind. */
+static void stress_block(struct run *run, struct block_scratch *scratch,
+                         struct particle_block *block, struct tile_sums *sums, bool still)
+{
+    const size_t count = (size_t)block->row_count * LANE_COUNT;
+    material_stage_run(run, block, scratch, still ? 0.0 : run->time_step);
+    if (run->any_plastic && has_yielded(scratch, count))
+        kinematics_store(run, block, scratch);
+    book_dissipation(scratch, count, sums);
+    record_fields(run, block, scratch, count);
+    stage_clock_lap(scratch->clock, STAGE_STORE);
 }
 
 void run_advance_block(struct run *run, struct block_scratch *scratch, uint32_t block_index,
@@ -168,31 +250,19 @@ void run_advance_block(struct run *run, struct block_scratch *scratch, uint32_t 
     const size_t count = (size_t)block->row_count * LANE_COUNT;
     if (count == 0)
         return;
-    const struct shape_context context = run_shape_context(run);
-    const bool last = run->scene.solver.stress_update == TALUS_STRESS_LAST;
-    const bool corrects = last || block->constrained || run->scene.solver.local_damping > 0;
-    if (still) {
-        clear_gradient(run, scratch, count);
-    } else {
-        run->kernels->gather(&context, block, corrects, scratch);
-        if (run->scene.solver.pic_rate > 0)
-            blend_velocity(run, block, scratch, count);
-    }
-    const double time_step = still ? 0.0 : run->time_step;
-    const double jacobian = kinematics_advance(run, block, scratch, time_step);
-    if (!(jacobian > 0) && sums->bad_particle == PARTICLE_NONE)
-        sums->bad_particle = block->id[scratch->bad_slot];
-    sums->least_jacobian = sticky_minimum(sums->least_jacobian, jacobian);
-    material_stage_run(run, block, scratch, time_step);
-    kinematics_store(run, block, scratch);
-    force_stresses(run, block, scratch, count, sums);
-    record_fields(run, block, scratch, count);
-    const double reach = still ? 0.0 : move(run, block, scratch, count);
-    memcpy(scratch->mass, particle_values(&run->grid.layout, block, PARTICLE_MASS, 0),
-           count * sizeof(double));
-    if (!still && (block->eliminates || !(reach <= 0.5)))
-        collect_crossers(run, block, block_index, scratch, count, tile);
-    const double speed = largest_speed_squared(run, block, count);
-    sums->speed_squared = sticky_maximum(sums->speed_squared, speed);
-    run->kernels->scatter(&context, block, scratch, last);
+    strain_block(run, scratch, block, sums, still);
+    stress_block(run, scratch, block, sums, still);
+    struct scatter_source source;
+    source_init(run, block, scratch, &source);
+    if (run->scene.solver.viscous_damping > 0)
+        damp_bulk(run, block, scratch, count, &source, sums);
+    const struct reach reach = move(run, block, scratch, count);
+    sums->speed_squared = sticky_maximum(sums->speed_squared, reach.speed_squared);
+    if (!still && (block->eliminates || !(reach.position <= 0.5)))
+        collect_crossers(run, block, block_index, scratch, count, &source, tile);
+    stage_clock_lap(scratch->clock, STAGE_MOVE);
+    const struct shape_context context = run_shape_context(run, run->time_step);
+    run->kernels->scatter(&context, block, &source,
+                          run->scene.solver.stress_update == TALUS_STRESS_LAST);
+    stage_clock_lap(scratch->clock, STAGE_SCATTER);
 }

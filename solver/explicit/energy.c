@@ -14,17 +14,17 @@ static void measure_block(const struct run *run, const struct particle_block *bl
     const struct domain *domain = &run->grid.domain;
     const struct particle_layout *layout = &run->grid.layout;
     const size_t count = (size_t)block->row_count * LANE_COUNT;
-    double *energy = scratch->dissipation;
+    real *energy = scratch->dissipation;
     if (count == 0)
         return;
     kinematics_load(run, block, scratch);
     material_stage_energy(run, block, scratch, energy);
-    const double *mass = particle_values(layout, block, PARTICLE_MASS, 0);
+    const real *mass = particle_values(layout, block, PARTICLE_MASS, 0);
     for (size_t i = 0; i < count; i++)
         sums->strain += scratch->reference_volume[i] * energy[i];
     for (uint32_t axis = 0; axis < domain->axis_count; axis++) {
-        const double *velocity = particle_values(layout, block, PARTICLE_VELOCITY, axis);
-        const double *position = particle_values(layout, block, PARTICLE_POSITION, axis);
+        const real *velocity = particle_values(layout, block, PARTICLE_VELOCITY, axis);
+        const real *position = particle_values(layout, block, PARTICLE_POSITION, axis);
         const double gravity = run->scene.gravity[axis];
         for (size_t i = 0; i < count; i++) {
             const int32_t cell = block->cell[axis] + (axis == 0 ? (int32_t)(i % LANE_COUNT) : 0);
@@ -79,11 +79,11 @@ void run_measure_momentum(const struct run *run, double momentum[3], double *mas
     for (size_t index = 0; index < run->grid.block_count; index++) {
         const struct particle_block *block = &run->grid.blocks[index];
         const size_t count = (size_t)block->row_count * LANE_COUNT;
-        const double *masses = particle_values(&run->grid.layout, block, PARTICLE_MASS, 0);
+        const real *masses = particle_values(&run->grid.layout, block, PARTICLE_MASS, 0);
         for (size_t i = 0; i < count; i++)
             *mass += masses[i];
         for (uint32_t axis = 0; axis < run->grid.domain.axis_count; axis++) {
-            const double *velocity =
+            const real *velocity =
                 particle_values(&run->grid.layout, block, PARTICLE_VELOCITY, axis);
             for (size_t i = 0; i < count; i++)
                 momentum[axis] += masses[i] * velocity[i];
@@ -96,7 +96,7 @@ void run_book_eliminated_energy(struct run *run, const struct particle_record *r
 {
     /* A block of one row with this particle in its first lane, through the same code. */
     const struct particle_layout *layout = &run->grid.layout;
-    _Alignas(64) double values[PARTICLE_MAX_DOUBLES * LANE_COUNT] = {0};
+    _Alignas(64) real values[PARTICLE_MAX_DOUBLES * LANE_COUNT] = {0};
     uint32_t ids[LANE_COUNT] = {record->id, PARTICLE_NONE, PARTICLE_NONE, PARTICLE_NONE};
     uint16_t bodies[LANE_COUNT] = {record->body};
     struct particle_block block = {.row_count = 1,

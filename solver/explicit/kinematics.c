@@ -1,150 +1,144 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Finite strain: the elastic left Cauchy-Green tensor is pushed forward, b_tr = f b f^T with
- * f = 1 + dt L (Mast 2013, eq. 3.26-3.37, with b^e), stored as e = (b - 1)/2, which keeps all
- * digits of small strains:  e_tr = f e f^T + sym(g) + g g^T / 2,  g = dt L. Materials see its
- * logarithm. Small strain: e += dt sym(L). Volumetric materials: ln J += ln det f. */
+ * f = 1 + g, g = dt L (Mast 2013, eq. 3.26-3.37, with b^e), stored as e = (b - 1)/2, which keeps
+ * all digits of small strains:  e_tr = f e f^T + sym(g) + g g^T / 2. Materials see its logarithm.
+ * Small strain: e += sym(g). Volumetric materials: ln J += ln det f. The trial strain replaces the
+ * stored one at once; the material stage corrects it where particles yield. */
 #include "explicit/kinematics.h"
 
 #include "math/log1p_series.h"
 #include "math/log_strain.h"
-#include "math/sticky.h"
+#include "math/tensor.h"
 
 #include <assert.h>
 #include <string.h>
 
-/* det(1 + g) - 1 without cancellation. */
-static inline double determinant_increment(const double g[9], size_t axis_count)
-{
-    if (axis_count == 1)
-        return g[0];
-    const double minor_z = g[0] * g[4] - g[1] * g[3];
-    if (axis_count == 2)
-        return g[0] + g[4] + minor_z;
-    const double minor_x = g[4] * g[8] - g[5] * g[7];
-    const double minor_y = g[0] * g[8] - g[2] * g[6];
-    return g[0] + g[4] + g[8] + minor_x + minor_y + minor_z + g[0] * minor_x -
-           g[1] * (g[3] * g[8] - g[5] * g[6]) + g[2] * (g[3] * g[7] - g[4] * g[6]);
-}
+#ifdef __OPTIMIZE__
+#define UNROLL _Pragma("GCC unroll 3")
+#else
+#define UNROLL
+#endif
 
-/* det(1 + dt L) - 1 into increment[count]; axis_count is a constant where this is inlined. */
-static inline void fill_determinants(size_t count, size_t axis_count, double *const gradient[9],
-                                     double time_step, double *restrict increment)
+/* Place of component (row, column) in the order xx yy zz xy yz xz. */
+static const unsigned char symmetric_index[3][3] = {{0, 3, 5}, {3, 1, 4}, {5, 4, 2}};
+
+/* g of one row of slots; `axes` is a constant where this is inlined. */
+TALUS_INLINE void load_increment(const struct block_scratch *scratch, size_t slot, size_t axes,
+                                 lanes g[3][3])
 {
-    for (size_t i = 0; i < count; i++) {
-        double g[9] = {0};
-        for (size_t row = 0; row < axis_count; row++) {
-            for (size_t column = 0; column < axis_count; column++)
-                g[3 * row + column] = time_step * gradient[3 * row + column][i];
+    UNROLL for (size_t row = 0; row < axes; row++)
+    {
+        UNROLL for (size_t column = 0; column < axes; column++)
+        {
+            g[row][column] = lanes_load(scratch->gradient[3 * row + column] + slot);
         }
-        increment[i] = determinant_increment(g, axis_count);
     }
 }
 
-static void determinants(size_t count, size_t axis_count, double *const gradient[9],
-                         double time_step, double *restrict increment)
+/* det(1 + g) - 1 without cancellation. */
+TALUS_INLINE lanes determinant_increment(size_t axes, lanes g[3][3])
 {
-    if (axis_count == 3)
-        fill_determinants(count, 3, gradient, time_step, increment);
-    else if (axis_count == 2)
-        fill_determinants(count, 2, gradient, time_step, increment);
+    if (axes == 1)
+        return g[0][0];
+    const lanes minor_z = g[0][0] * g[1][1] - g[0][1] * g[1][0];
+    if (axes == 2)
+        return g[0][0] + g[1][1] + minor_z;
+    const lanes minor_x = g[1][1] * g[2][2] - g[1][2] * g[2][1];
+    const lanes minor_y = g[0][0] * g[2][2] - g[0][2] * g[2][0];
+    return g[0][0] + g[1][1] + g[2][2] + minor_x + minor_y + minor_z + g[0][0] * minor_x -
+           g[0][1] * (g[1][0] * g[2][2] - g[1][2] * g[2][0]) +
+           g[0][2] * (g[1][0] * g[2][1] - g[1][1] * g[2][0]);
+}
+
+/* e <- f e f^T + sym(g) + g g^T / 2 for one row of slots, in place. */
+TALUS_INLINE void push_forward(size_t axes, lanes g[3][3], real *const e[6], size_t slot)
+{
+    lanes old[3][3], half[3][3]; /* half = f e + g / 2 */
+    UNROLL for (size_t row = 0; row < axes; row++)
+    {
+        UNROLL for (size_t column = 0; column < axes; column++)
+        {
+            old[row][column] = lanes_load(e[symmetric_index[row][column]] + slot);
+        }
+    }
+    UNROLL for (size_t row = 0; row < axes; row++)
+    {
+        UNROLL for (size_t column = 0; column < axes; column++)
+        {
+            half[row][column] = old[row][column] + (real)0.5 * g[row][column];
+            UNROLL for (size_t k = 0; k < axes; k++)
+            {
+                half[row][column] += g[row][k] * old[k][column];
+            }
+        }
+    }
+    UNROLL for (size_t row = 0; row < axes; row++)
+    {
+        UNROLL for (size_t column = row; column < axes; column++)
+        {
+            lanes sum = half[row][column] + (real)0.5 * g[column][row];
+            UNROLL for (size_t k = 0; k < axes; k++)
+            {
+                sum += half[row][k] * g[column][k];
+            }
+            lanes_store(e[symmetric_index[row][column]] + slot, sum);
+        }
+    }
+}
+
+/* Tensors of the whole block, and det(1 + g) - 1. */
+TALUS_INLINE void push_block(size_t count, size_t axes, const struct block_scratch *scratch,
+                             real *const e[6])
+{
+    for (size_t slot = 0; slot < count; slot += LANE_COUNT) {
+        lanes g[3][3];
+        load_increment(scratch, slot, axes, g);
+        lanes_store(scratch->volume_increment + slot, determinant_increment(axes, g));
+        if (e != NULL)
+            push_forward(axes, g, e, slot);
+    }
+}
+
+static void push(const struct run *run, size_t count, const struct block_scratch *scratch,
+                 real *const e[6])
+{
+    if (run->grid.domain.axis_count == 3)
+        push_block(count, 3, scratch, e);
+    else if (run->grid.domain.axis_count == 2)
+        push_block(count, 2, scratch, e);
     else
-        fill_determinants(count, 1, gradient, time_step, increment);
+        push_block(count, 1, scratch, e);
 }
 
-/* e_tr for three axes; tensors in the order xx yy zz xy yz xz. */
-static void push_forward_3(size_t count, double *const L[9], double dt, double *const e[6],
-                           double *const out[6])
+/* d = sym(g) / dt. */
+static void symmetric_rate(size_t count, size_t axes, const struct block_scratch *scratch,
+                           real inverse_step)
 {
-    double *const *o = out;
-    assert(e[0] != NULL && e[3] != NULL && e[4] != NULL && e[5] != NULL);
-#pragma omp simd
-    for (size_t i = 0; i < count; i++) {
-        const double xx = dt * L[0][i], xy = dt * L[1][i], xz = dt * L[2][i];
-        const double yx = dt * L[3][i], yy = dt * L[4][i], yz = dt * L[5][i];
-        const double zx = dt * L[6][i], zy = dt * L[7][i], zz = dt * L[8][i];
-        const double exx = e[0][i], eyy = e[1][i], ezz = e[2][i];
-        const double exy = e[3][i], eyz = e[4][i], exz = e[5][i];
-        /* a = (1 + g) e */
-        const double axx = exx + xx * exx + xy * exy + xz * exz;
-        const double axy = exy + xx * exy + xy * eyy + xz * eyz;
-        const double axz = exz + xx * exz + xy * eyz + xz * ezz;
-        const double ayx = exy + yx * exx + yy * exy + yz * exz;
-        const double ayy = eyy + yx * exy + yy * eyy + yz * eyz;
-        const double ayz = eyz + yx * exz + yy * eyz + yz * ezz;
-        const double azx = exz + zx * exx + zy * exy + zz * exz;
-        const double azy = eyz + zx * exy + zy * eyy + zz * eyz;
-        const double azz = ezz + zx * exz + zy * eyz + zz * ezz;
-        o[0][i] = axx + axx * xx + axy * xy + axz * xz + xx + 0.5 * (xx * xx + xy * xy + xz * xz);
-        o[1][i] = ayy + ayx * yx + ayy * yy + ayz * yz + yy + 0.5 * (yx * yx + yy * yy + yz * yz);
-        o[2][i] = azz + azx * zx + azy * zy + azz * zz + zz + 0.5 * (zx * zx + zy * zy + zz * zz);
-        o[3][i] =
-            axy + axx * yx + axy * yy + axz * yz + 0.5 * (xy + yx + xx * yx + xy * yy + xz * yz);
-        o[4][i] =
-            ayz + ayx * zx + ayy * zy + ayz * zz + 0.5 * (yz + zy + yx * zx + yy * zy + yz * zz);
-        o[5][i] =
-            axz + axx * zx + axy * zy + axz * zz + 0.5 * (xz + zx + xx * zx + xy * zy + xz * zz);
+    for (size_t row = 0; row < axes; row++) {
+        for (size_t column = row; column < axes; column++) {
+            const real *a = scratch->gradient[3 * row + column];
+            const real *b = scratch->gradient[3 * column + row];
+            real *out = scratch->rate[symmetric_index[row][column]];
+            for (size_t slot = 0; slot < count; slot += LANE_COUNT)
+                lanes_store(out + slot, (real)0.5 * inverse_step *
+                                            (lanes_load(a + slot) + lanes_load(b + slot)));
+        }
     }
 }
 
-static void push_forward_2(size_t count, double *const L[9], double dt, double *const e[6],
-                           double *const out[6])
+static void spin_rate(size_t count, size_t axes, const struct block_scratch *scratch,
+                      real inverse_step)
 {
-    assert(e[0] != NULL && e[1] != NULL && e[2] != NULL && e[3] != NULL);
-#pragma omp simd
-    for (size_t i = 0; i < count; i++) {
-        const double xx = dt * L[0][i], xy = dt * L[1][i];
-        const double yx = dt * L[3][i], yy = dt * L[4][i];
-        const double exx = e[0][i], eyy = e[1][i], exy = e[3][i];
-        const double axx = exx + xx * exx + xy * exy, axy = exy + xx * exy + xy * eyy;
-        const double ayx = exy + yx * exx + yy * exy, ayy = eyy + yx * exy + yy * eyy;
-        out[0][i] = axx + axx * xx + axy * xy + xx + 0.5 * (xx * xx + xy * xy);
-        out[1][i] = ayy + ayx * yx + ayy * yy + yy + 0.5 * (yx * yx + yy * yy);
-        out[2][i] = e[2][i];
-        out[3][i] = axy + axx * yx + axy * yy + 0.5 * (xy + yx + xx * yx + xy * yy);
-    }
-}
-
-static void push_forward_1(size_t count, double *const L[9], double dt, double *const e[6],
-                           double *const out[6])
-{
-    assert(e[0] != NULL && e[1] != NULL && e[2] != NULL);
-#pragma omp simd
-    for (size_t i = 0; i < count; i++) {
-        const double g = dt * L[0][i], f = 1.0 + g;
-        out[0][i] = f * e[0][i] * f + g + 0.5 * g * g;
-        out[1][i] = e[1][i];
-        out[2][i] = e[2][i];
-    }
-}
-
-static void symmetric_rate(size_t count, size_t axis_count, double *const L[9],
-                           double *const rate[6])
-{
-    static const unsigned char row[6] = {0, 1, 2, 0, 1, 0}, column[6] = {0, 1, 2, 1, 2, 2};
-    for (size_t component = 0; component < 6; component++) {
-        if (row[component] >= axis_count || column[component] >= axis_count)
-            continue; /* stays zero */
-        const double *a = L[3 * row[component] + column[component]];
-        const double *b = L[3 * column[component] + row[component]];
-        double *restrict out = rate[component];
-#pragma omp simd
-        for (size_t i = 0; i < count; i++)
-            out[i] = 0.5 * (a[i] + b[i]);
-    }
-}
-
-static void spin_rate(size_t count, size_t axis_count, double *const L[9], double *const spin[3])
-{
-    static const unsigned char row[3] = {0, 1, 0}, column[3] = {1, 2, 2};
+    static const unsigned char rows[3] = {0, 1, 0}, columns[3] = {1, 2, 2};
     for (size_t component = 0; component < 3; component++) {
-        if (column[component] >= axis_count)
+        if (columns[component] >= axes)
             continue; /* stays zero */
-        const double *a = L[3 * row[component] + column[component]];
-        const double *b = L[3 * column[component] + row[component]];
-        double *restrict out = spin[component];
-#pragma omp simd
-        for (size_t i = 0; i < count; i++)
-            out[i] = 0.5 * (a[i] - b[i]);
+        const real *a = scratch->gradient[3 * rows[component] + columns[component]];
+        const real *b = scratch->gradient[3 * columns[component] + rows[component]];
+        real *out = scratch->spin[component];
+        for (size_t slot = 0; slot < count; slot += LANE_COUNT)
+            lanes_store(out + slot,
+                        (real)0.5 * inverse_step * (lanes_load(a + slot) - lanes_load(b + slot)));
     }
 }
 
@@ -159,137 +153,212 @@ static const struct run_material *material_of(const struct run *run,
 static void reference_volumes(const struct run *run, const struct particle_block *block,
                               struct block_scratch *scratch, size_t count)
 {
-    const double *mass = particle_values(&run->grid.layout, block, PARTICLE_MASS, 0);
-    memcpy(scratch->weight, mass, count * sizeof *mass);
+    const real *mass = particle_values(&run->grid.layout, block, PARTICLE_MASS, 0);
     if (block->body == NULL) {
-        const double inverse = 1.0 / material_of(run, block, 0)->density;
-        for (size_t i = 0; i < count; i++)
-            scratch->reference_volume[i] = mass[i] * inverse;
+        const real inverse = (real)(1.0 / material_of(run, block, 0)->density);
+        for (size_t slot = 0; slot < count; slot += LANE_COUNT)
+            lanes_store(scratch->reference_volume + slot, inverse * lanes_load(mass + slot));
         return;
     }
-    for (size_t i = 0; i < count; i++)
-        scratch->reference_volume[i] = mass[i] / material_of(run, block, i)->density;
+    for (size_t slot = 0; slot < count; slot++)
+        scratch->reference_volume[slot] = mass[slot] / (real)material_of(run, block, slot)->density;
 }
 
-/* Updates volume, J and ln J; returns the smallest det f. */
-static double advance_volume(struct run *run, struct particle_block *block,
-                             struct block_scratch *scratch, size_t count, double time_step)
+/* Updates volume and J; returns the smallest det f. */
+static double advance_volume(const struct run *run, const struct particle_block *block,
+                             struct block_scratch *scratch, size_t count)
 {
-    double *increment = scratch->dissipation; /* free until the material runs */
-    determinants(count, run->grid.domain.axis_count, scratch->gradient, time_step, increment);
-    double *restrict volume = particle_values(&run->grid.layout, block, PARTICLE_VOLUME, 0);
-    double least = 0;
-    for (size_t i = 0; i < count; i++) {
-        least = sticky_minimum(least, increment[i]);
-        volume[i] = run->finite_strain ? volume[i] * (1.0 + increment[i]) : volume[i];
-        const double v0 = scratch->reference_volume[i];
-        scratch->volume_ratio[i] = run->finite_strain && v0 > 0 ? volume[i] / v0 : 1.0;
+    real *volume = particle_values(&run->grid.layout, block, PARTICLE_VOLUME, 0);
+    const real *increment = scratch->volume_increment;
+    lanes least = {0}, poison = {0};
+    for (size_t slot = 0; slot < count; slot += LANE_COUNT) {
+        const lanes grown = lanes_load(increment + slot);
+        least = lanes_minimum(least, grown);
+        poison += grown * 0; /* the minimum may drop what is not a number */
+        if (run->finite_strain)
+            lanes_store(volume + slot, lanes_load(volume + slot) * (1 + grown));
     }
-    for (size_t i = 0; !(1.0 + least > 0) && i < count; i++) {
-        if (!(1.0 + increment[i] > 0)) {
-            scratch->bad_slot = i;
+    const double smallest = 1.0 - (double)lanes_largest(poison - least);
+    for (size_t slot = 0; !(smallest > 0) && slot < count; slot++) {
+        if (!(1 + increment[slot] > 0)) {
+            scratch->bad_slot = slot;
             break;
         }
     }
-    return 1.0 + least;
+    return smallest;
 }
 
-/* strain[0] = stored[0] = ln J (small strain: trace) for the slots of volumetric materials. */
+static void volume_ratios(const struct run *run, const struct particle_block *block,
+                          struct block_scratch *scratch, size_t count)
+{
+    const real *volume = particle_values(&run->grid.layout, block, PARTICLE_VOLUME, 0);
+    for (size_t slot = 0; slot < count; slot++) {
+        const real initial = scratch->reference_volume[slot];
+        scratch->volume_ratio[slot] =
+            run->finite_strain && initial > 0 ? volume[slot] / initial : 1;
+    }
+}
+
+static void strain_arrays(const struct run *run, const struct particle_block *block, real *e[6])
+{
+    for (uint32_t component = 0; component < 6; component++)
+        e[component] = component < run->stored_components
+                           ? particle_values(&run->grid.layout, block, PARTICLE_STRAIN, component)
+                           : NULL;
+}
+
+/* strain[0] = stored[0] = ln J (small strain: trace). */
 static void advance_volumetric(const struct run *run, const struct particle_block *block,
-                               struct block_scratch *scratch, size_t count, double time_step)
+                               struct block_scratch *scratch, size_t count)
 {
-    const double *old = particle_values(&run->grid.layout, block, PARTICLE_STRAIN, 0);
-    double *increment = scratch->dissipation;
-    if (run->finite_strain) {
+    real *stored = particle_values(&run->grid.layout, block, PARTICLE_STRAIN, 0);
+    real *increment = scratch->volume_increment;
+    if (run->finite_strain)
         log1p_array(count, increment, increment);
-    } else {
-        for (size_t i = 0; i < count; i++)
-            increment[i] =
-                time_step * (scratch->rate[0][i] + scratch->rate[1][i] + scratch->rate[2][i]);
+    for (size_t slot = 0; slot < count; slot += LANE_COUNT) {
+        lanes grown = {0};
+        if (run->finite_strain) {
+            grown = lanes_load(increment + slot);
+        } else {
+            for (size_t axis = 0; axis < run->grid.domain.axis_count; axis++)
+                grown += lanes_load(scratch->gradient[4 * axis] + slot);
+        }
+        const lanes sum = lanes_load(stored + slot) + grown;
+        lanes_store(stored + slot, sum);
+        lanes_store(scratch->strain[0] + slot, sum);
     }
-    for (size_t i = 0; i < count; i++) {
-        if (run->any_tensor && !material_of(run, block, i)->model->volumetric)
-            continue;
-        scratch->stored[0][i] = scratch->strain[0][i] = old[i] + increment[i];
-        for (size_t component = 1; component < run->strain_components; component++)
-            scratch->stored[component][i] = scratch->strain[component][i] = 0;
-    }
+    for (size_t component = 1; component < run->strain_components; component++)
+        memset(scratch->strain[component], 0, count * sizeof(real));
 }
 
-static void advance_tensor(const struct run *run, const struct particle_block *block,
-                           struct block_scratch *scratch, size_t count, double time_step)
+static void advance_tensor(const struct run *run, struct block_scratch *scratch, size_t count,
+                           real *const e[6])
 {
-    double *old[6] = {NULL};
-    assert(run->stored_components <= 6 && run->strain_components == run->stored_components);
-    for (uint32_t component = 0; component < run->stored_components; component++)
-        old[component] = particle_values(&run->grid.layout, block, PARTICLE_STRAIN, component);
-    if (!run->finite_strain) {
-        for (size_t component = 0; component < run->strain_components; component++) {
-            for (size_t i = 0; i < count; i++)
-                scratch->stored[component][i] = scratch->strain[component][i] =
-                    old[component][i] + time_step * scratch->rate[component][i];
-        }
+    if (run->finite_strain) {
+        /* Slots without a positive definite b come out as NAN and are found by health. */
+        (void)log_strain_batch(count, run->strain_components, e, scratch->strain);
         return;
     }
-    if (run->grid.domain.axis_count == 3)
-        push_forward_3(count, scratch->gradient, time_step, old, scratch->stored);
-    else if (run->grid.domain.axis_count == 2)
-        push_forward_2(count, scratch->gradient, time_step, old, scratch->stored);
-    else
-        push_forward_1(count, scratch->gradient, time_step, old, scratch->stored);
-    /* Slots without a positive definite b come out as NAN and are found by health. */
-    (void)log_strain_batch(count, run->strain_components, scratch->stored, scratch->strain);
+    const size_t axes = run->grid.domain.axis_count;
+    for (size_t row = 0; row < axes; row++) {
+        for (size_t column = row; column < axes; column++) {
+            const real *a = scratch->gradient[3 * row + column];
+            const real *b = scratch->gradient[3 * column + row];
+            real *out = e[symmetric_index[row][column]];
+            for (size_t slot = 0; slot < count; slot += LANE_COUNT)
+                lanes_store(out + slot,
+                            lanes_load(out + slot) +
+                                (real)0.5 * (lanes_load(a + slot) + lanes_load(b + slot)));
+        }
+    }
+    for (size_t component = 0; component < run->strain_components; component++)
+        memcpy(scratch->strain[component], e[component], count * sizeof(real));
 }
 
-/* F - 1 <- g + (1 + g)(F - 1), row-major; only where it is stored. */
+/* Solids and fluids in one scene: each slot keeps what its own kind makes of the increment. */
+static void advance_mixed(const struct run *run, const struct particle_block *block,
+                          struct block_scratch *scratch, size_t count, real *const e[6])
+{
+    real *logarithm = scratch->mean;
+    memcpy(logarithm, e[0], count * sizeof(real));
+    push(run, count, scratch, run->finite_strain ? e : NULL);
+    advance_tensor(run, scratch, count, e);
+    for (size_t slot = 0; slot < count; slot++) {
+        if (!material_of(run, block, slot)->model->volumetric)
+            continue;
+        real grown = 0;
+        for (size_t axis = 0; axis < run->grid.domain.axis_count; axis++)
+            grown += scratch->gradient[4 * axis][slot];
+        if (run->finite_strain)
+            grown = (real)log1p((double)scratch->volume_increment[slot]);
+        for (size_t component = 0; component < run->strain_components; component++)
+            e[component][slot] = scratch->strain[component][slot] = 0;
+        e[0][slot] = scratch->strain[0][slot] = logarithm[slot] + grown;
+    }
+}
+
+/* F - 1 <- g + (1 + g)(F - 1), row-major. */
+static void advance_gradient(const struct run *run, const struct particle_block *block,
+                             const struct block_scratch *scratch, size_t count)
+{
+    const size_t axes = run->grid.domain.axis_count;
+    for (size_t slot = 0; slot < count; slot += LANE_COUNT) {
+        lanes old[3][3], g[3][3];
+        load_increment(scratch, slot, axes, g);
+        for (uint32_t entry = 0; entry < axes * axes; entry++)
+            old[entry / axes][entry % axes] = lanes_load(
+                particle_values(&run->grid.layout, block, PARTICLE_GRADIENT, entry) + slot);
+        for (uint32_t entry = 0; entry < axes * axes; entry++) {
+            const size_t row = entry / axes, column = entry % axes;
+            lanes sum = old[row][column] + g[row][column];
+            for (size_t k = 0; k < axes; k++)
+                sum += g[row][k] * old[k][column];
+            lanes_store(particle_values(&run->grid.layout, block, PARTICLE_GRADIENT, entry) + slot,
+                        sum);
+        }
+    }
+}
+
+static void advance_total_strain(const struct run *run, const struct particle_block *block,
+                                 const struct block_scratch *scratch, size_t count)
+{
+    const size_t axes = run->grid.domain.axis_count;
+    for (size_t row = 0; row < axes; row++) {
+        for (size_t column = row; column < axes; column++) {
+            real *total = particle_values(&run->grid.layout, block, PARTICLE_TOTAL_STRAIN,
+                                          symmetric_index[row][column]);
+            for (size_t slot = 0; slot < count; slot++)
+                total[slot] += (real)0.5 * (scratch->gradient[3 * row + column][slot] +
+                                            scratch->gradient[3 * column + row][slot]);
+        }
+    }
+}
+
+/* Strains that are kept for output only. */
 static void advance_tracked(const struct run *run, const struct particle_block *block,
-                            const struct block_scratch *scratch, size_t count, double time_step)
+                            const struct block_scratch *scratch, size_t count)
 {
     const struct particle_layout *layout = &run->grid.layout;
-    const size_t axes = run->grid.domain.axis_count;
-    for (size_t i = 0; layout->component_count[PARTICLE_GRADIENT] > 0 && i < count; i++) {
-        double old[3][3], g[3][3];
-        for (size_t row = 0; row < axes; row++) {
-            for (size_t column = 0; column < axes; column++) {
-                g[row][column] = time_step * scratch->gradient[3 * row + column][i];
-                old[row][column] = particle_values(layout, block, PARTICLE_GRADIENT,
-                                                   (uint32_t)(axes * row + column))[i];
-            }
-        }
-        for (size_t row = 0; row < axes; row++) {
-            for (size_t column = 0; column < axes; column++) {
-                double sum = old[row][column] + g[row][column];
-                for (size_t k = 0; k < axes; k++)
-                    sum += g[row][k] * old[k][column];
-                particle_values(layout, block, PARTICLE_GRADIENT,
-                                (uint32_t)(axes * row + column))[i] = sum;
-            }
-        }
-    }
-    for (uint32_t component = 0; component < layout->component_count[PARTICLE_TOTAL_STRAIN];
-         component++) {
-        double *total = particle_values(layout, block, PARTICLE_TOTAL_STRAIN, component);
-        for (size_t i = 0; i < count; i++)
-            total[i] += time_step * scratch->rate[component][i];
-    }
+    if (layout->component_count[PARTICLE_GRADIENT] > 0)
+        advance_gradient(run, block, scratch, count);
+    if (layout->component_count[PARTICLE_TOTAL_STRAIN] > 0)
+        advance_total_strain(run, block, scratch, count);
 }
 
-double kinematics_advance(struct run *run, struct particle_block *block,
+/* Rates, spins and J, for the materials and the damping that want them. */
+static void fill_rates(const struct run *run, const struct particle_block *block,
+                       struct block_scratch *scratch, size_t count, double time_step)
+{
+    const size_t axes = run->grid.domain.axis_count;
+    const real inverse_step = time_step > 0 ? (real)(1.0 / time_step) : 0;
+    if (run->any_rate) {
+        symmetric_rate(count, axes, scratch, inverse_step);
+        volume_ratios(run, block, scratch, count);
+    }
+    if (run->any_spin && run->finite_strain)
+        spin_rate(count, axes, scratch, inverse_step);
+}
+
+double kinematics_advance(struct run *run, const struct particle_block *block,
                           struct block_scratch *scratch, double time_step)
 {
     const size_t count = (size_t)block->row_count * LANE_COUNT;
+    real *e[6];
+    strain_arrays(run, block, e);
     reference_volumes(run, block, scratch, count);
-    symmetric_rate(count, run->grid.domain.axis_count, scratch->gradient, scratch->rate);
-    if (run->any_spin && run->finite_strain)
-        spin_rate(count, run->grid.domain.axis_count, scratch->gradient, scratch->spin);
-    const double least = advance_volume(run, block, scratch, count, time_step);
-    if (run->any_tensor)
-        advance_tensor(run, block, scratch, count, time_step);
-    if (run->any_volumetric)
-        advance_volumetric(run, block, scratch, count, time_step);
-    advance_tracked(run, block, scratch, count, time_step);
-    for (size_t i = 0; i < count; i++)
-        scratch->divergence[i] = scratch->rate[0][i] + scratch->rate[1][i] + scratch->rate[2][i];
+    advance_tracked(run, block, scratch, count);
+    const bool mixed = run->any_tensor && run->any_volumetric;
+    if (mixed) {
+        advance_mixed(run, block, scratch, count, e);
+    } else {
+        push(run, count, scratch, run->any_tensor && run->finite_strain ? e : NULL);
+        if (run->any_tensor)
+            advance_tensor(run, scratch, count, e);
+    }
+    const double least = advance_volume(run, block, scratch, count);
+    if (run->any_volumetric && !mixed)
+        advance_volumetric(run, block, scratch, count);
+    fill_rates(run, block, scratch, count, time_step);
     return least;
 }
 
@@ -297,49 +366,34 @@ void kinematics_store(struct run *run, const struct particle_block *block,
                       struct block_scratch *scratch)
 {
     const size_t count = (size_t)block->row_count * LANE_COUNT;
-    bool changed = false;
-    if (run->any_plastic) {
-        for (size_t i = 0; i < count; i++)
-            changed = changed || scratch->plastic_strain[i] > 0;
+    real *stored[6], *fresh[6];
+    strain_arrays(run, block, stored);
+    memcpy(fresh, run->finite_strain ? scratch->gradient : scratch->strain, sizeof fresh);
+    if (run->finite_strain)
+        exp_strain_batch(count, run->strain_components, scratch->strain, fresh);
+    for (size_t slot = 0; slot < count; slot += LANE_COUNT) {
+        const lane_mask yielded = lanes_load(scratch->plastic_strain + slot) > 0;
+        for (size_t component = 0; component < run->stored_components; component++)
+            lanes_store(stored[component] + slot,
+                        lanes_select(yielded, lanes_load(fresh[component] + slot),
+                                     lanes_load(stored[component] + slot)));
     }
-    if (changed) {
-        double *fresh[6];
-        memcpy(fresh, scratch->gradient, sizeof fresh); /* free by now */
-        if (run->finite_strain)
-            exp_strain_batch(count, run->strain_components, scratch->strain, fresh);
-        else
-            memcpy(fresh, scratch->strain, sizeof fresh);
-        for (size_t component = 0; component < run->strain_components; component++) {
-            double *restrict stored = scratch->stored[component];
-            const double *restrict value = fresh[component];
-#pragma omp simd
-            for (size_t i = 0; i < count; i++)
-                stored[i] = scratch->plastic_strain[i] > 0 ? value[i] : stored[i];
-        }
-    }
-    for (uint32_t component = 0; component < run->stored_components; component++)
-        memcpy(particle_values(&run->grid.layout, block, PARTICLE_STRAIN, component),
-               scratch->stored[component], count * sizeof(double));
 }
 
 void kinematics_load(const struct run *run, const struct particle_block *block,
                      struct block_scratch *scratch)
 {
     const size_t count = (size_t)block->row_count * LANE_COUNT;
-    const double *volume = particle_values(&run->grid.layout, block, PARTICLE_VOLUME, 0);
+    real *stored[6];
     reference_volumes(run, block, scratch, count);
-    double *stored[6] = {NULL};
-    assert(run->stored_components >= 1 && run->stored_components <= 6);
-    for (uint32_t component = 0; component < run->stored_components; component++) {
-        stored[component] = particle_values(&run->grid.layout, block, PARTICLE_STRAIN, component);
-        memcpy(scratch->strain[component], stored[component], count * sizeof(double));
-    }
+    volume_ratios(run, block, scratch, count);
+    strain_arrays(run, block, stored);
+    for (uint32_t component = 0; component < run->stored_components; component++)
+        memcpy(scratch->strain[component], stored[component], count * sizeof(real));
     if (run->any_tensor && run->finite_strain)
         (void)log_strain_batch(count, run->strain_components, stored, scratch->strain);
-    for (size_t i = 0; i < count; i++) {
-        const double v0 = scratch->reference_volume[i];
-        scratch->volume_ratio[i] = run->finite_strain && v0 > 0 ? volume[i] / v0 : 1.0;
-        if (run->any_tensor && run->any_volumetric && material_of(run, block, i)->model->volumetric)
-            scratch->strain[0][i] = stored[0][i];
+    for (size_t slot = 0; run->any_tensor && run->any_volumetric && slot < count; slot++) {
+        if (material_of(run, block, slot)->model->volumetric)
+            scratch->strain[0][slot] = stored[0][slot];
     }
 }

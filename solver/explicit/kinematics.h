@@ -5,10 +5,11 @@
 
 #include "explicit/run.h"
 
-/* Reads scratch->gradient, writes stored (trial strain as it is stored), strain (for the
- * materials), rate, volume_ratio, reference_volume, weight, divergence; multiplies the stored
- * volumes, F and total strain. Returns the smallest det of 1 + dt L of the block's particles. */
-double kinematics_advance(struct run *run, struct particle_block *block,
+/* Reads scratch->gradient; turns the stored strain into the trial strain as it is stored, and
+ * advances the stored volume, F and total strain; writes strain (for the materials), rate, spin,
+ * volume_ratio, reference_volume. Returns the smallest det of 1 + dt L of the block's particles, or
+ * NAN. */
+double kinematics_advance(struct run *run, const struct particle_block *block,
                           struct block_scratch *scratch, double time_step);
 
 /* Elastic strain of the materials -> stored form, for slots whose strain the material changed

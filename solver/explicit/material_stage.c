@@ -27,69 +27,117 @@ static bool is_single(uint64_t set)
 }
 
 /* weight[slot] = mass where the slot belongs to the material, else 0. */
-static const double *weights_of(const struct run *run, const struct particle_block *block,
-                                struct block_scratch *scratch, size_t material, bool single)
+static const real *weights_of(const struct run *run, const struct particle_block *block,
+                              struct block_scratch *scratch, size_t material, bool single)
 {
+    const real *mass = particle_values(&run->grid.layout, block, PARTICLE_MASS, 0);
     if (single)
-        return scratch->weight;
-    double *weight = scratch->compact_dissipation;
+        return mass;
     const size_t count = (size_t)block->row_count * LANE_COUNT;
     for (size_t slot = 0; slot < count; slot++)
-        weight[slot] = material_of_slot(run, block, slot) == material ? scratch->weight[slot] : 0.0;
-    return weight;
+        scratch->weight[slot] = material_of_slot(run, block, slot) == material ? mass[slot] : 0;
+    return scratch->weight;
+}
+
+/* stretch[slot] = b's factor minus one, exp(2 shift) - 1. */
+static void stretches(size_t count, const real *shift, real *stretch)
+{
+    lanes largest = {0};
+    for (size_t slot = 0; slot < count; slot += LANE_COUNT)
+        largest = lanes_maximum(largest, lanes_absolute(lanes_load(shift + slot)));
+    if (2 * lanes_largest(largest) <= (real)SERIES_LIMIT) {
+#pragma omp simd
+        for (size_t slot = 0; slot < count; slot++)
+            stretch[slot] = (real)expm1_series(2 * shift[slot]);
+        return;
+    }
+    for (size_t slot = 0; slot < count; slot++)
+        stretch[slot] = (real)expm1(2.0 * (double)shift[slot]);
+}
+
+/* Adds the same to the logarithmic strain of all axes: b <- exp(2 shift) b, e <- e + s e + s/2. */
+static void shift_strain(const struct run *run, const struct particle_block *block,
+                         struct block_scratch *scratch, size_t count, const real *shift)
+{
+    real *stretch = scratch->compact_volume_ratio;
+    real *const *strain = scratch->strain;
+    real *stored[6] = {NULL};
+    for (uint32_t component = 0; component < run->strain_components; component++)
+        stored[component] = particle_values(&run->grid.layout, block, PARTICLE_STRAIN, component);
+    if (run->finite_strain)
+        stretches(count, shift, stretch);
+    for (size_t component = 0; component < run->strain_components; component++) {
+        const bool diagonal = component < 3;
+        for (size_t slot = 0; slot < count; slot += LANE_COUNT) {
+            const lanes add = lanes_load(shift + slot);
+            lanes e = lanes_load(stored[component] + slot);
+            if (diagonal)
+                lanes_store(strain[component] + slot, lanes_load(strain[component] + slot) + add);
+            if (run->finite_strain) {
+                const lanes grow = lanes_load(stretch + slot);
+                e += grow * (diagonal ? e + (real)0.5 : e);
+            } else if (diagonal) {
+                e += add;
+            }
+            lanes_store(stored[component] + slot, e);
+        }
+    }
+}
+
+/* The way of each slot's trace/3 to the mean of its cell; 0 where the slot takes no part. */
+static void shifts_to_mean(size_t count, const real *weight, real *const tensor[6], real *shift)
+{
+    lanes total = {0}, sum = {0};
+    for (size_t slot = 0; slot < count; slot += LANE_COUNT) {
+        const lanes trace = lanes_load(tensor[0] + slot) + lanes_load(tensor[1] + slot) +
+                            lanes_load(tensor[2] + slot);
+        const lanes w = lanes_load(weight + slot);
+        total += w;
+        sum += w * trace;
+        lanes_store(shift + slot, trace);
+    }
+    const lanes mean = sum / lanes_select(total > 0, total, lanes_splat(1));
+    const real third = (real)(1.0 / 3.0);
+    for (size_t slot = 0; slot < count; slot += LANE_COUNT) {
+        const lane_mask takes_part = lanes_load(weight + slot) > 0;
+        lanes_store(shift + slot,
+                    lanes_keep(takes_part, third * (mean - lanes_load(shift + slot))));
+    }
 }
 
 /* Replaces the volumetric trial strain by its cell average: strain and stored form,
- * b <- exp(2 shift / 3) b at finite strain (Mast 2013, eq. 4.40). */
-static void average_strain(const struct run *run, const struct material *model,
-                           struct block_scratch *scratch, size_t count, const double *weight)
+ * b <- exp(2 shift) b at finite strain (Mast 2013, eq. 4.40). */
+static void average_strain(const struct run *run, const struct particle_block *block,
+                           const struct material *model, struct block_scratch *scratch,
+                           size_t count, const real *weight)
 {
-    double *mean = scratch->compact_volume_ratio;
     if (model->volumetric) {
+        real *stored = particle_values(&run->grid.layout, block, PARTICLE_STRAIN, 0);
         cell_average(count, weight, scratch->strain[0]);
-        for (size_t i = 0; i < count; i++)
-            scratch->stored[0][i] = weight[i] > 0 ? scratch->strain[0][i] : scratch->stored[0][i];
+        for (size_t slot = 0; slot < count; slot += LANE_COUNT)
+            lanes_store(stored + slot, lanes_select(lanes_load(weight + slot) > 0,
+                                                    lanes_load(scratch->strain[0] + slot),
+                                                    lanes_load(stored + slot)));
         return;
     }
-    for (size_t i = 0; i < count; i++)
-        mean[i] = scratch->strain[0][i] + scratch->strain[1][i] + scratch->strain[2][i];
-    cell_average(count, weight, mean);
-    for (size_t i = 0; i < count; i++) {
-        const double trace = scratch->strain[0][i] + scratch->strain[1][i] + scratch->strain[2][i];
-        const double shift = weight[i] > 0 ? (mean[i] - trace) / 3.0 : 0.0;
-        const double stretch = 2.0 * shift;
-        const double grow =
-            run->finite_strain
-                ? (fabs(stretch) <= SERIES_LIMIT ? expm1_series(stretch) : expm1(stretch))
-                : 0.0;
-        const double add = run->finite_strain ? 0.5 * grow : shift;
-        for (size_t component = 0; component < 3; component++) {
-            scratch->strain[component][i] += shift;
-            scratch->stored[component][i] += grow * scratch->stored[component][i] + add;
-        }
-        for (size_t component = 3; component < run->strain_components; component++)
-            scratch->stored[component][i] += grow * scratch->stored[component][i];
-    }
+    shifts_to_mean(count, weight, scratch->strain, scratch->mean);
+    shift_strain(run, block, scratch, count, scratch->mean);
 }
 
 /* Replaces the mean stress by its cell average. */
-static void average_stress(struct block_scratch *scratch, size_t count, const double *weight)
+static void average_stress(struct block_scratch *scratch, size_t count, const real *weight)
 {
-    double *mean = scratch->compact_volume_ratio;
-    for (size_t i = 0; i < count; i++)
-        mean[i] = (scratch->stress[0][i] + scratch->stress[1][i] + scratch->stress[2][i]) / 3.0;
-    cell_average(count, weight, mean);
-    for (size_t i = 0; i < count; i++) {
-        const double p =
-            (scratch->stress[0][i] + scratch->stress[1][i] + scratch->stress[2][i]) / 3.0;
-        const double shift = weight[i] > 0 ? mean[i] - p : 0.0;
+    shifts_to_mean(count, weight, scratch->stress, scratch->mean);
+    for (size_t slot = 0; slot < count; slot += LANE_COUNT) {
+        const lanes shift = lanes_load(scratch->mean + slot);
         for (size_t component = 0; component < 3; component++)
-            scratch->stress[component][i] += shift;
+            lanes_store(scratch->stress[component] + slot,
+                        lanes_load(scratch->stress[component] + slot) + shift);
     }
 }
 
 static void history_arrays(const struct run *run, const struct particle_block *block,
-                           double *history[SCRATCH_HISTORY_MAX])
+                           real *history[SCRATCH_HISTORY_MAX])
 {
     for (uint32_t index = 0; index < run->grid.layout.component_count[PARTICLE_HISTORY]; index++)
         history[index] = particle_values(&run->grid.layout, block, PARTICLE_HISTORY, index);
@@ -98,7 +146,7 @@ static void history_arrays(const struct run *run, const struct particle_block *b
 static void update_single(const struct run *run, const struct particle_block *block,
                           struct block_scratch *scratch, size_t material, double time_step)
 {
-    double *history[SCRATCH_HISTORY_MAX] = {NULL};
+    real *history[SCRATCH_HISTORY_MAX] = {NULL};
     history_arrays(run, block, history);
     struct material_batch batch = {.count = (size_t)block->row_count * LANE_COUNT,
                                    .component_count = run->strain_components,
@@ -121,7 +169,7 @@ static void update_single(const struct run *run, const struct particle_block *bl
  * the number of slots, a multiple of LANE_COUNT. */
 static size_t compact_slots(const struct run *run, const struct particle_block *block,
                             struct block_scratch *scratch, size_t material,
-                            double *const history[SCRATCH_HISTORY_MAX])
+                            real *const history[SCRATCH_HISTORY_MAX])
 {
     const size_t slot_count = (size_t)block->row_count * LANE_COUNT;
     const size_t state_count = run->materials[material].model->state_count;
@@ -156,7 +204,7 @@ static size_t compact_slots(const struct run *run, const struct particle_block *
 /* The way back. */
 static void spread_slots(const struct run *run, const struct particle_block *block,
                          struct block_scratch *scratch, size_t material,
-                         double *const history[SCRATCH_HISTORY_MAX])
+                         real *const history[SCRATCH_HISTORY_MAX])
 {
     const size_t slot_count = (size_t)block->row_count * LANE_COUNT;
     size_t used = 0;
@@ -178,7 +226,7 @@ static void spread_slots(const struct run *run, const struct particle_block *blo
 static void update_compacted(const struct run *run, const struct particle_block *block,
                              struct block_scratch *scratch, size_t material, double time_step)
 {
-    double *history[SCRATCH_HISTORY_MAX] = {NULL};
+    real *history[SCRATCH_HISTORY_MAX] = {NULL};
     history_arrays(run, block, history);
     struct material_batch batch = {.count = compact_slots(run, block, scratch, material, history),
                                    .component_count = run->strain_components,
@@ -201,9 +249,9 @@ static void update_compacted(const struct run *run, const struct particle_block 
 static void clear_results(const struct run *run, struct block_scratch *scratch, size_t count)
 {
     for (size_t component = 0; component < run->strain_components; component++)
-        memset(scratch->stress[component], 0, count * sizeof(double));
-    memset(scratch->plastic_strain, 0, count * sizeof(double));
-    memset(scratch->dissipation, 0, count * sizeof(double));
+        memset(scratch->stress[component], 0, count * sizeof(real));
+    memset(scratch->plastic_strain, 0, count * sizeof(real));
+    memset(scratch->dissipation, 0, count * sizeof(real));
 }
 
 void material_stage_run(struct run *run, const struct particle_block *block,
@@ -215,8 +263,6 @@ void material_stage_run(struct run *run, const struct particle_block *block,
         averages && run->scene.solver.anti_locking_apply == TALUS_APPLY_STRAIN_AND_STRESS;
     const uint64_t present = materials_present(run, block);
     const bool single = is_single(present);
-    if (averages && run->scene.solver.viscous_damping > 0)
-        cell_average(count, scratch->weight, scratch->divergence);
     if (!single)
         clear_results(run, scratch, count);
     for (size_t material = 0; material < run->scene.material_count; material++) {
@@ -224,7 +270,7 @@ void material_stage_run(struct run *run, const struct particle_block *block,
             continue;
         const struct material *model = run->materials[material].model;
         if (averages)
-            average_strain(run, model, scratch, count,
+            average_strain(run, block, model, scratch, count,
                            weights_of(run, block, scratch, material, single));
         if (single)
             update_single(run, block, scratch, material, time_step);
@@ -236,11 +282,11 @@ void material_stage_run(struct run *run, const struct particle_block *block,
 }
 
 void material_stage_energy(const struct run *run, const struct particle_block *block,
-                           struct block_scratch *scratch, double *energy)
+                           struct block_scratch *scratch, real *energy)
 {
     const size_t count = (size_t)block->row_count * LANE_COUNT;
     const uint64_t present = materials_present(run, block);
-    double *history[SCRATCH_HISTORY_MAX] = {NULL};
+    real *history[SCRATCH_HISTORY_MAX] = {NULL};
     history_arrays(run, block, history);
     struct material_batch batch = {.count = count,
                                    .component_count = run->strain_components,
@@ -252,7 +298,7 @@ void material_stage_energy(const struct run *run, const struct particle_block *b
     for (size_t material = 0; material < run->scene.material_count; material++) {
         if ((present >> material & 1) == 0)
             continue;
-        double *part = scratch->compact_dissipation;
+        real *part = scratch->compact_dissipation;
         const struct run_material *entry = &run->materials[material];
         entry->model->strain_energy(entry->constants, &batch, part);
         for (size_t slot = 0; slot < count; slot++) {

@@ -6,13 +6,13 @@
 #include "explicit/run.h"
 
 /* Reads the kinematics in scratch; writes strain, stress, plastic_strain, dissipation, the history
- * of the particles, and the averaged volumetric parts into `stored`. */
+ * of the particles, and the averaged volumetric parts into the stored strain. */
 void material_stage_run(struct run *run, const struct particle_block *block,
                         struct block_scratch *scratch, double time_step);
 
 /* Strain energy per initial volume of the strains in scratch into energy[slots]. */
 void material_stage_energy(const struct run *run, const struct particle_block *block,
-                           struct block_scratch *scratch, double *energy);
+                           struct block_scratch *scratch, real *energy);
 
 /* The material of a slot. */
 static inline size_t material_of_slot(const struct run *run, const struct particle_block *block,

@@ -71,7 +71,7 @@ static enum talus_status move_record(struct run *run, const struct outbox_record
     if (target == BLOCK_NONE)
         return talus_error_set(error, TALUS_MEMORY, "memory", "", "out of memory at step %llu",
                                (unsigned long long)run->step);
-    const struct shape_context context = run_shape_context(run);
+    const struct shape_context context = run_shape_context(run, run->time_step);
     run->kernels->scatter_one(&context, &run->grid.blocks[target], slot, entry->force_stress,
                               run->scene.solver.stress_update == TALUS_STRESS_LAST);
     return TALUS_OK;

@@ -38,7 +38,7 @@ struct run_material {
 struct outbox_record {
     uint32_t block, slot;
     bool eliminated; /* by a boundary */
-    double force_stress[6];
+    real force_stress[6];
 };
 
 /* A node with boundary conditions. */
@@ -98,6 +98,7 @@ struct run {
     struct run_material *materials; /* [scene.material_count] owned */
     uint16_t *body_material;        /* [scene.body_count] owned */
     bool finite_strain, any_volumetric, any_tensor, any_plastic, any_spin;
+    bool any_rate;            /* a material or the damping wants d */
     size_t strain_components; /* that the materials see: 3, 4 or 6 */
     size_t
         stored_components; /* of PARTICLE_STRAIN: the same, or 1 if all materials are volumetric */
@@ -136,12 +137,10 @@ struct run {
     struct run_audit audit;
 };
 
-static inline struct shape_context run_shape_context(struct run *run)
+static inline struct shape_context run_shape_context(struct run *run, double time_step)
 {
-    struct shape_context context = {.particles = &run->grid.layout, .nodes = &run->grid.nodes};
-    for (size_t axis = 0; axis < 3; axis++)
-        context.inverse_cell[axis] = run->grid.domain.inverse_cell[axis];
-    return context;
+    return shape_context_make(&run->grid.layout, &run->grid.nodes, run->grid.domain.cell,
+                              time_step);
 }
 
 /* Share of gravity that acts now: 1, or less during the force ramp. */

@@ -51,12 +51,24 @@ static void partition_outbox(struct run *run)
     }
 }
 
+/* Fetches the particles of the block after the one at `entry`. */
+static void prefetch_next(const struct run *run, const struct tile *tile, size_t entry,
+                          uint32_t component_count)
+{
+    if (entry + 1 < tile->end)
+        particle_block_prefetch(&run->grid.blocks[run->grid.tile_blocks[entry + 1]],
+                                component_count);
+}
+
 static void kick_tile(struct run *run, const struct tile *tile, struct stage_clock *clock)
 {
-    const struct shape_context context = run_shape_context(run);
+    const struct shape_context context = run_shape_context(run, run->time_step);
     stage_clock_lap(clock, STAGE_WAIT);
-    for (size_t entry = tile->begin; entry < tile->end; entry++)
+    const uint32_t kicked = run->grid.layout.first_component[PARTICLE_MASS] + 1;
+    for (size_t entry = tile->begin; entry < tile->end; entry++) {
+        prefetch_next(run, tile, entry, kicked);
         run->kernels->kick(&context, &run->grid.blocks[run->grid.tile_blocks[entry]]);
+    }
     stage_clock_lap(clock, STAGE_FIRST_PASS);
 }
 
@@ -68,8 +80,10 @@ static void advance_tile(struct run *run, size_t index, struct block_scratch *sc
     memset(sums, 0, sizeof *sums);
     sums->least_jacobian = 1.0;
     sums->bad_particle = PARTICLE_NONE;
-    for (size_t entry = tile->begin; entry < tile->end; entry++)
+    for (size_t entry = tile->begin; entry < tile->end; entry++) {
+        prefetch_next(run, tile, entry, run->grid.layout.double_count);
         run_advance_block(run, scratch, run->grid.tile_blocks[entry], tile, sums, still);
+    }
     stage_clock_lap(scratch->clock, STAGE_SECOND_PASS);
 }
 

@@ -25,7 +25,7 @@ static inline void LOCAL(basis)(const lanes position[DIMENSION], lanes phi[BASIS
     }
 }
 
-static inline void LOCAL(load_position)(double *const values[DIMENSION], size_t slot,
+static inline void LOCAL(load_position)(real *const values[DIMENSION], size_t slot,
                                         lanes position[DIMENSION])
 {
     UNROLL for (int axis = 0; axis < DIMENSION; axis++)
@@ -79,38 +79,62 @@ static inline void LOCAL(add_moments)(struct node_blocks *nodes, const struct pa
     {
         const lanes low = 0.5 * moment[s] - moment[s + 1];
         const lanes high = 0.5 * moment[s] + moment[s + 1];
-        double *near = node_values(nodes, block->nodes[s], component);
+        real *near = node_values(nodes, block->nodes[s], component);
         lanes_store(near, lanes_load(near) + low + lanes_shift_up(high));
         *node_values(nodes, block->nodes[s + 1], component) += high[LANE_COUNT - 1];
     }
 }
 
-static inline lanes LOCAL(evaluate)(const lanes c[BASIS], const lanes phi[BASIS])
+/* The polynomial at the particles of one row: Horner's rule, one axis after the other. */
+static inline lanes LOCAL(evaluate)(const lanes c[BASIS], const lanes position[DIMENSION])
 {
-    lanes value = c[0];
-    UNROLL for (int s = 1; s < BASIS; s++)
+    lanes value[BASIS];
+    UNROLL for (int s = 0; s < BASIS; s++)
     {
-        value += c[s] * phi[s];
+        value[s] = c[s];
     }
-    return value;
+    UNROLL for (int axis = DIMENSION - 1; axis >= 0; axis--)
+    {
+        UNROLL for (int s = 0; s < 1 << axis; s++)
+        {
+            value[s] += position[axis] * value[s | 1 << axis];
+        }
+    }
+    return value[0];
 }
 
-/* d/dx of the polynomial along one axis, per cell width. */
-static inline lanes LOCAL(differentiate)(const lanes c[BASIS], const lanes phi[BASIS], int axis)
+/* The same with the derivative along every axis, per cell width: eleven multiply-adds in 3D. */
+static inline lanes LOCAL(evaluate_with_slopes)(const lanes c[BASIS],
+                                                const lanes position[DIMENSION],
+                                                lanes slope[DIMENSION])
 {
-    lanes value = c[1 << axis];
-    UNROLL for (int s = 1; s < BASIS; s++)
+    lanes value[BASIS], derivative[DIMENSION][BASIS];
+    UNROLL for (int s = 0; s < BASIS; s++)
     {
-        if (s & 1 << axis || s == 0)
-            continue;
-        value += c[s | 1 << axis] * phi[s];
+        value[s] = c[s];
     }
-    return value;
+    UNROLL for (int axis = DIMENSION - 1; axis >= 0; axis--)
+    {
+        UNROLL for (int s = 0; s < 1 << axis; s++)
+        {
+            derivative[axis][s] = value[s | 1 << axis];
+            value[s] += position[axis] * value[s | 1 << axis];
+            UNROLL for (int other = axis + 1; other < DIMENSION; other++)
+            {
+                derivative[other][s] += position[axis] * derivative[other][s | 1 << axis];
+            }
+        }
+    }
+    UNROLL for (int axis = 0; axis < DIMENSION; axis++)
+    {
+        slope[axis] = derivative[axis][0];
+    }
+    return value[0];
 }
 
 static inline void LOCAL(position_arrays)(const struct shape_context *context,
                                           const struct particle_block *block,
-                                          double *values[DIMENSION])
+                                          real *values[DIMENSION])
 {
     for (uint32_t axis = 0; axis < DIMENSION; axis++)
         values[axis] = particle_values(context->particles, block, PARTICLE_POSITION, axis);
@@ -118,13 +142,13 @@ static inline void LOCAL(position_arrays)(const struct shape_context *context,
 
 static void LOCAL(kick)(const struct shape_context *context, struct particle_block *block)
 {
-    double *position[DIMENSION];
+    real *position[DIMENSION];
     LOCAL(position_arrays)(context, block, position);
-    const double *mass = particle_values(context->particles, block, PARTICLE_MASS, 0);
+    const real *mass = particle_values(context->particles, block, PARTICLE_MASS, 0);
     const struct node_layout *layout = &context->nodes->layout;
     const size_t slot_count = (size_t)block->row_count * LANE_COUNT;
     for (uint32_t axis = 0; axis < DIMENSION; axis++) {
-        double *velocity = particle_values(context->particles, block, PARTICLE_VELOCITY, axis);
+        real *velocity = particle_values(context->particles, block, PARTICLE_VELOCITY, axis);
         lanes c[BASIS], moment[BASIS] = {0};
         LOCAL(load_coefficients)(context->nodes, block, layout->kick + axis, c);
         for (size_t slot = 0; slot < slot_count; slot += LANE_COUNT) {
@@ -133,8 +157,7 @@ static void LOCAL(kick)(const struct shape_context *context, struct particle_blo
             LOCAL(basis)(x, phi);
             const lanes m = lanes_load(mass + slot);
             /* Empty slots must not gather velocity. */
-            const lanes v =
-                lanes_keep(m > 0.0, lanes_load(velocity + slot) + LOCAL(evaluate)(c, phi));
+            const lanes v = lanes_keep(m > 0, lanes_load(velocity + slot) + LOCAL(evaluate)(c, x));
             lanes_store(velocity + slot, v);
             const lanes p = m * v;
             UNROLL for (int s = 0; s < BASIS; s++)
@@ -146,56 +169,65 @@ static void LOCAL(kick)(const struct shape_context *context, struct particle_blo
     }
 }
 
-static void LOCAL(apply_correction)(const struct shape_context *context,
-                                    struct particle_block *block)
+/* Displacement in cell widths and gradient of the increment along one axis; moves the particles. */
+static void LOCAL(gather_axis)(const struct shape_context *context,
+                               const struct particle_block *block, uint32_t axis,
+                               real *const position[DIMENSION], struct block_scratch *scratch)
 {
-    double *position[DIMENSION];
-    LOCAL(position_arrays)(context, block, position);
-    const double *mass = particle_values(context->particles, block, PARTICLE_MASS, 0);
+    const real *mass = particle_values(context->particles, block, PARTICLE_MASS, 0);
     const size_t slot_count = (size_t)block->row_count * LANE_COUNT;
-    for (uint32_t axis = 0; axis < DIMENSION; axis++) {
-        double *velocity = particle_values(context->particles, block, PARTICLE_VELOCITY, axis);
-        lanes c[BASIS];
-        LOCAL(load_coefficients)
-        (context->nodes, block, context->nodes->layout.correction + axis, c);
-        for (size_t slot = 0; slot < slot_count; slot += LANE_COUNT) {
-            lanes x[DIMENSION], phi[BASIS];
-            LOCAL(load_position)(position, slot, x);
-            LOCAL(basis)(x, phi);
-            const lanes dv = lanes_keep(lanes_load(mass + slot) > 0.0, LOCAL(evaluate)(c, phi));
-            lanes_store(velocity + slot, lanes_load(velocity + slot) + dv);
+    real *gradient[DIMENSION];
+    lanes c[BASIS], ratio[DIMENSION];
+    LOCAL(load_coefficients)(context->nodes, block, context->nodes->layout.velocity + axis, c);
+    UNROLL for (int s = 0; s < BASIS; s++)
+    {
+        c[s] *= context->displacement[axis];
+    }
+    UNROLL for (uint32_t along = 0; along < DIMENSION; along++)
+    {
+        gradient[along] = scratch->gradient[3 * axis + along];
+        ratio[along] = lanes_splat(context->cell_ratio[axis][along]);
+    }
+    for (size_t slot = 0; slot < slot_count; slot += LANE_COUNT) {
+        lanes x[DIMENSION], slope[DIMENSION];
+        LOCAL(load_position)(position, slot, x);
+        const lane_mask filled = lanes_load(mass + slot) > 0;
+        const lanes moved = LOCAL(evaluate_with_slopes)(c, x, slope);
+        lanes_store(scratch->displacement[axis] + slot, lanes_keep(filled, moved));
+        UNROLL for (int along = 0; along < DIMENSION; along++)
+        {
+            lanes_store(gradient[along] + slot, lanes_keep(filled, slope[along] * ratio[along]));
         }
     }
 }
 
-static void LOCAL(gather)(const struct shape_context *context, struct particle_block *block,
+/* v_p += sum N correction_i along one axis. */
+static void LOCAL(correct_axis)(const struct shape_context *context,
+                                const struct particle_block *block, uint32_t axis,
+                                real *const position[DIMENSION])
+{
+    const real *mass = particle_values(context->particles, block, PARTICLE_MASS, 0);
+    const size_t slot_count = (size_t)block->row_count * LANE_COUNT;
+    real *velocity = particle_values(context->particles, block, PARTICLE_VELOCITY, axis);
+    lanes c[BASIS];
+    LOCAL(load_coefficients)(context->nodes, block, context->nodes->layout.correction + axis, c);
+    for (size_t slot = 0; slot < slot_count; slot += LANE_COUNT) {
+        lanes x[DIMENSION];
+        LOCAL(load_position)(position, slot, x);
+        const lanes dv = lanes_keep(lanes_load(mass + slot) > 0, LOCAL(evaluate)(c, x));
+        lanes_store(velocity + slot, lanes_load(velocity + slot) + dv);
+    }
+}
+
+static void LOCAL(gather)(const struct shape_context *context, const struct particle_block *block,
                           bool correct, struct block_scratch *scratch)
 {
-    if (correct)
-        LOCAL(apply_correction)(context, block);
-    double *position[DIMENSION];
+    real *position[DIMENSION];
     LOCAL(position_arrays)(context, block, position);
-    const double *mass = particle_values(context->particles, block, PARTICLE_MASS, 0);
-    const size_t slot_count = (size_t)block->row_count * LANE_COUNT;
     for (uint32_t axis = 0; axis < DIMENSION; axis++) {
-        lanes c[BASIS];
-        LOCAL(load_coefficients)
-        (context->nodes, block, context->nodes->layout.velocity + axis, c);
-        for (size_t slot = 0; slot < slot_count; slot += LANE_COUNT) {
-            lanes x[DIMENSION], phi[BASIS];
-            LOCAL(load_position)(position, slot, x);
-            LOCAL(basis)(x, phi);
-            const lane_mask filled = lanes_load(mass + slot) > 0.0;
-            lanes_store(scratch->velocity[axis] + slot,
-                        lanes_keep(filled, LOCAL(evaluate)(c, phi)));
-            UNROLL for (int along = 0; along < DIMENSION; along++)
-            {
-                const lanes slope =
-                    LOCAL(differentiate)(c, phi, along) * context->inverse_cell[along];
-                lanes_store(scratch->gradient[3 * axis + (uint32_t)along] + slot,
-                            lanes_keep(filled, slope));
-            }
-        }
+        if (correct)
+            LOCAL(correct_axis)(context, block, axis, position);
+        LOCAL(gather_axis)(context, block, axis, position, scratch);
     }
 }
 
@@ -216,34 +248,48 @@ static inline void LOCAL(add_force)(lanes moment[BASIS], const lanes q[DIMENSION
 /* Index of component (row, column) in the order xx yy zz xy yz xz. */
 static const unsigned char LOCAL(symmetric_index)[3][3] = {{0, 3, 5}, {3, 1, 4}, {5, 4, 2}};
 
-static void LOCAL(scatter_force)(const struct shape_context *context,
-                                 const struct particle_block *block,
-                                 const struct block_scratch *scratch, uint32_t row)
+/* force_row_i -= sum (V0 tau) . grad N; with `momentum` also momentum_row_i += sum N m v. */
+static void LOCAL(scatter_row)(const struct shape_context *context,
+                               const struct particle_block *block,
+                               const struct scatter_source *source, uint32_t row, bool momentum)
 {
-    double *position[DIMENSION];
+    real *position[DIMENSION];
     LOCAL(position_arrays)(context, block, position);
     const size_t slot_count = (size_t)block->row_count * LANE_COUNT;
-    lanes moment[BASIS] = {0};
+    const real *velocity = particle_values(context->particles, block, PARTICLE_VELOCITY, row);
+    const real *stress[DIMENSION];
+    UNROLL for (int axis = 0; axis < DIMENSION; axis++)
+    {
+        stress[axis] = source->stress[LOCAL(symmetric_index)[row][axis]];
+    }
+    lanes force[BASIS] = {0}, momenta[BASIS] = {0};
     for (size_t slot = 0; slot < slot_count; slot += LANE_COUNT) {
         lanes x[DIMENSION], phi[BASIS], q[DIMENSION];
         LOCAL(load_position)(position, slot, x);
         LOCAL(basis)(x, phi);
+        const lanes volume = lanes_load(source->volume + slot);
         UNROLL for (int axis = 0; axis < DIMENSION; axis++)
         {
-            const double *values = scratch->force_stress[LOCAL(symmetric_index)[row][axis]];
-            q[axis] = lanes_load(values + slot) * context->inverse_cell[axis];
+            q[axis] = volume * context->inverse_cell[axis] * lanes_load(stress[axis] + slot);
         }
-        LOCAL(add_force)(moment, q, phi);
+        LOCAL(add_force)(force, q, phi);
+        if (momentum) {
+            const lanes p = lanes_load(source->mass + slot) * lanes_load(velocity + slot);
+            UNROLL for (int s = 0; s < BASIS; s++)
+            {
+                momenta[s] += p * phi[s];
+            }
+        }
     }
-    LOCAL(add_moments)(context->nodes, block, context->nodes->layout.force + row, moment);
+    LOCAL(add_moments)(context->nodes, block, context->nodes->layout.force + row, force);
+    if (momentum)
+        LOCAL(add_moments)(context->nodes, block, context->nodes->layout.momentum + row, momenta);
 }
 
-/* component_i += sum N weight (velocity or 1). */
-static void LOCAL(scatter_weight)(const struct shape_context *context,
-                                  const struct particle_block *block, const double *weight,
-                                  const double *velocity, uint32_t component)
+static void LOCAL(scatter_mass)(const struct shape_context *context,
+                                const struct particle_block *block, const real *mass)
 {
-    double *position[DIMENSION];
+    real *position[DIMENSION];
     LOCAL(position_arrays)(context, block, position);
     const size_t slot_count = (size_t)block->row_count * LANE_COUNT;
     lanes moment[BASIS] = {0};
@@ -251,45 +297,40 @@ static void LOCAL(scatter_weight)(const struct shape_context *context,
         lanes x[DIMENSION], phi[BASIS];
         LOCAL(load_position)(position, slot, x);
         LOCAL(basis)(x, phi);
-        lanes w = lanes_load(weight + slot);
-        if (velocity != NULL)
-            w *= lanes_load(velocity + slot);
+        const lanes m = lanes_load(mass + slot);
         UNROLL for (int s = 0; s < BASIS; s++)
         {
-            moment[s] += w * phi[s];
+            moment[s] += m * phi[s];
         }
     }
-    LOCAL(add_moments)(context->nodes, block, component, moment);
+    LOCAL(add_moments)(context->nodes, block, context->nodes->layout.mass, moment);
 }
 
 static void LOCAL(scatter)(const struct shape_context *context, const struct particle_block *block,
-                           const struct block_scratch *scratch, bool momentum)
+                           const struct scatter_source *source, bool momentum)
 {
-    const struct node_layout *layout = &context->nodes->layout;
-    LOCAL(scatter_weight)(context, block, scratch->mass, NULL, layout->mass);
-    for (uint32_t axis = 0; axis < DIMENSION; axis++) {
-        LOCAL(scatter_force)(context, block, scratch, axis);
+    LOCAL(scatter_mass)(context, block, source->mass);
+    for (uint32_t row = 0; row < DIMENSION; row++) {
         if (momentum)
-            LOCAL(scatter_weight)
-        (context, block, scratch->mass,
-         particle_values(context->particles, block, PARTICLE_VELOCITY, axis),
-         layout->momentum + axis);
+            LOCAL(scatter_row)(context, block, source, row, true);
+        else
+            LOCAL(scatter_row)(context, block, source, row, false);
     }
 }
 
 static void LOCAL(scatter_one)(const struct shape_context *context,
                                const struct particle_block *block, size_t slot,
-                               const double force_stress[6], bool momentum)
+                               const real force_stress[6], bool momentum)
 {
-    double *position[DIMENSION];
+    real *position[DIMENSION];
     LOCAL(position_arrays)(context, block, position);
-    const double mass = particle_values(context->particles, block, PARTICLE_MASS, 0)[slot];
+    const real mass = particle_values(context->particles, block, PARTICLE_MASS, 0)[slot];
     const struct node_layout *layout = &context->nodes->layout;
     const size_t lane = slot % LANE_COUNT;
     for (int corner = 0; corner < BASIS; corner++) {
-        double weight = 1.0, slope[DIMENSION];
+        real weight = 1, slope[DIMENSION];
         for (int axis = 0; axis < DIMENSION; axis++) {
-            const double sign = corner >> axis & 1 ? 1.0 : -1.0;
+            const real sign = corner >> axis & 1 ? 1.0 : -1.0;
             weight *= 0.5 + sign * position[axis][slot];
             slope[axis] = sign * context->inverse_cell[axis];
             for (int other = 0; other < DIMENSION; other++) {
@@ -303,7 +344,7 @@ static void LOCAL(scatter_one)(const struct shape_context *context,
         const size_t node = shifted % LANE_COUNT;
         node_values(context->nodes, node_block, layout->mass)[node] += weight * mass;
         for (uint32_t row = 0; row < DIMENSION; row++) {
-            double force = 0;
+            real force = 0;
             for (int axis = 0; axis < DIMENSION; axis++)
                 force -= force_stress[LOCAL(symmetric_index)[row][axis]] * slope[axis];
             node_values(context->nodes, node_block, layout->force + row)[node] += force;

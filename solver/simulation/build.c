@@ -104,6 +104,8 @@ static enum talus_status build_materials(struct run *run, struct talus_error *er
         run->any_tensor = run->any_tensor || !material->model->volumetric;
         run->any_plastic = run->any_plastic || material->model->plastic;
         run->any_spin = run->any_spin || material->model->needs_spin;
+        run->any_rate =
+            run->any_rate || material->model->needs_rate || run->scene.solver.viscous_damping > 0;
         run->reference_density = fmin(run->reference_density, material->density);
     }
     for (size_t index = 0; index < run->scene.body_count; index++)

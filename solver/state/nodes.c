@@ -28,9 +28,9 @@ void node_blocks_release(struct node_blocks *nodes)
 static int grow(struct node_blocks *nodes)
 {
     const size_t capacity = nodes->capacity == 0 ? 256 : 2 * nodes->capacity;
-    const size_t block_bytes = nodes->layout.component_count * LANE_COUNT * sizeof(double);
+    const size_t block_bytes = nodes->layout.component_count * LANE_COUNT * sizeof(real);
     const size_t bytes = (capacity * block_bytes + 63) / 64 * 64;
-    double *values = aligned_alloc(64, bytes);
+    real *values = aligned_alloc(64, bytes);
     if (values == NULL)
         return -1;
     int32_t(*place)[3] = realloc(nodes->place, capacity * sizeof *place);
@@ -62,7 +62,7 @@ uint32_t node_blocks_require(struct node_blocks *nodes, int32_t x, int32_t y, in
     nodes->place[index][1] = y;
     nodes->place[index][2] = z;
     memset(node_values(nodes, index, 0), 0,
-           nodes->layout.component_count * LANE_COUNT * sizeof(double));
+           nodes->layout.component_count * LANE_COUNT * sizeof(real));
     nodes->count++;
     return index;
 }

@@ -28,7 +28,7 @@ struct node_blocks {
     struct node_layout layout;
     size_t count, capacity;
     int32_t (*place)[3]; /* [count] first node: x (multiple of LANE_COUNT), y, z */
-    double *values;      /* [count][component_count][LANE_COUNT], aligned to 64 bytes */
+    real *values;        /* [count][component_count][LANE_COUNT], aligned to 64 bytes */
     struct block_map map;
 };
 
@@ -41,7 +41,7 @@ void node_blocks_release(struct node_blocks *nodes);
 /* Index of the node block at a place, made (zeroed) if missing; BLOCK_NONE when memory ran out. */
 uint32_t node_blocks_require(struct node_blocks *nodes, int32_t x, int32_t y, int32_t z);
 
-static inline double *node_values(const struct node_blocks *nodes, size_t block, uint32_t component)
+static inline real *node_values(const struct node_blocks *nodes, size_t block, uint32_t component)
 {
     return nodes->values + (block * nodes->layout.component_count + component) * LANE_COUNT;
 }

@@ -20,7 +20,7 @@ void particle_layout_finish(struct particle_layout *layout)
 size_t particle_chunk_bytes(const struct particle_layout *layout, uint32_t row_capacity)
 {
     const size_t slots = (size_t)row_capacity * LANE_COUNT;
-    const size_t bytes = slots * (layout->double_count * sizeof(double) + sizeof(uint32_t) +
+    const size_t bytes = slots * (layout->double_count * sizeof(real) + sizeof(uint32_t) +
                                   (layout->has_body ? sizeof(uint16_t) : 0));
     return (bytes + CHUNK_ALIGNMENT - 1) / CHUNK_ALIGNMENT * CHUNK_ALIGNMENT;
 }
@@ -57,7 +57,7 @@ int particle_block_reserve(const struct particle_layout *layout, struct particle
         assert(block->data != NULL && old.id != NULL);
         for (size_t component = 0; component < layout->double_count; component++)
             memcpy(block->data + component * slots, old.data + component * old_slots,
-                   old_slots * sizeof(double));
+                   old_slots * sizeof(real));
         memcpy(block->id, old.id, old_slots * sizeof *old.id);
         if (block->body != NULL && old.body != NULL)
             memcpy(block->body, old.body, old_slots * sizeof *old.body);
@@ -118,7 +118,7 @@ void particle_block_remove(const struct particle_layout *layout, struct particle
     const size_t last = (size_t)(block->lane_count[lane] - 1) * LANE_COUNT + lane;
     const size_t slots = (size_t)block->row_capacity * LANE_COUNT;
     for (size_t component = 0; component < layout->double_count; component++) {
-        double *values = block->data + component * slots;
+        real *values = block->data + component * slots;
         record->values[component] = values[slot];
         values[slot] = values[last];
         values[last] = 0;

@@ -40,7 +40,7 @@ struct particle_block {
     uint32_t row_count; /* rows in use: the largest lane_count */
     uint32_t row_capacity;
     uint32_t lane_count[LANE_COUNT];
-    double *data;   /* the chunk; [double_count][row_capacity * LANE_COUNT] */
+    real *data;     /* the chunk; [double_count][row_capacity * LANE_COUNT] */
     uint32_t *id;   /* [row_capacity * LANE_COUNT], inside the chunk */
     uint16_t *body; /* the same, or NULL */
     uint32_t nodes[BLOCK_NODE_NEIGHBOURS]; /* node blocks at (x + bit 0, y + bit 1, z + bit 2) */
@@ -53,7 +53,7 @@ enum { PARTICLE_MAX_DOUBLES = 96 };
 struct particle_record {
     uint32_t id;
     uint16_t body;
-    double values[PARTICLE_MAX_DOUBLES]; /* [double_count] */
+    real values[PARTICLE_MAX_DOUBLES]; /* [double_count] */
 };
 
 /* Sets first_component and double_count from component_count. */
@@ -62,12 +62,24 @@ void particle_layout_finish(struct particle_layout *layout);
 size_t particle_chunk_bytes(const struct particle_layout *layout, uint32_t row_capacity);
 
 /* Array of one component of a field: [row_capacity * LANE_COUNT]. */
-static inline double *particle_values(const struct particle_layout *layout,
-                                      const struct particle_block *block, enum particle_field field,
-                                      uint32_t component)
+static inline real *particle_values(const struct particle_layout *layout,
+                                    const struct particle_block *block, enum particle_field field,
+                                    uint32_t component)
 {
     return block->data +
            (size_t)(layout->first_component[field] + component) * block->row_capacity * LANE_COUNT;
+}
+
+/* Asks for the first `components` components of a block's particles before they are needed: blocks
+ * lie anywhere in memory, so that the processor cannot guess the next one. */
+static inline void particle_block_prefetch(const struct particle_block *block,
+                                           uint32_t component_count)
+{
+    enum { CACHE_LINE = 64 };
+    const char *data = (const char *)block->data;
+    const size_t bytes = (size_t)component_count * block->row_capacity * LANE_COUNT * sizeof(real);
+    for (size_t offset = 0; offset < bytes; offset += CACHE_LINE)
+        __builtin_prefetch(data + offset, 1);
 }
 
 /* Gives the block a chunk of at least `rows` rows, keeping its particles. 0, or -1 without memory.

@@ -4,10 +4,10 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Everything behind `memory` is a pointer to an array of `capacity` doubles. */
+/* Everything behind `memory` is a pointer to an array of `capacity` numbers. */
 enum {
     ARRAY_COUNT =
-        (sizeof(struct block_scratch) - offsetof(struct block_scratch, gradient)) / sizeof(double *)
+        (sizeof(struct block_scratch) - offsetof(struct block_scratch, gradient)) / sizeof(real *)
 };
 
 int block_scratch_reserve(struct block_scratch *scratch, size_t slots)
@@ -16,16 +16,16 @@ int block_scratch_reserve(struct block_scratch *scratch, size_t slots)
         return 0;
     /* An odd number of cache lines between arrays, so that they do not share cache sets. */
     const size_t capacity = ((slots + slots / 2) / 16 * 2 + 3) * 8;
-    double *memory = aligned_alloc(64, ARRAY_COUNT * capacity * sizeof(double));
+    real *memory = aligned_alloc(64, ARRAY_COUNT * capacity * sizeof(real));
     if (memory == NULL)
         return -1;
-    memset(memory, 0, ARRAY_COUNT * capacity * sizeof(double));
+    memset(memory, 0, ARRAY_COUNT * capacity * sizeof(real));
     free(scratch->memory);
     scratch->memory = memory;
     scratch->capacity = capacity;
     char *arrays = (char *)scratch + offsetof(struct block_scratch, gradient);
     for (size_t index = 0; index < ARRAY_COUNT; index++) {
-        double *array = memory + index * capacity;
+        real *array = memory + index * capacity;
         memcpy(arrays + index * sizeof array, &array, sizeof array);
     }
     return 0;

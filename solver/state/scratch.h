@@ -4,6 +4,8 @@
 #ifndef TALUS_SCRATCH_H
 #define TALUS_SCRATCH_H
 
+#include "math/real.h"
+
 #include <stddef.h>
 
 enum { SCRATCH_HISTORY_MAX = 16 };
@@ -16,29 +18,29 @@ struct block_scratch {
     size_t bad_slot; /* where the last block had a det f <= 0, or NAN; kinematics sets it then */
     void *memory;    /* owned; every array below lies in it, aligned to 64 bytes */
     /* gather writes */
-    double *gradient[9]; /* L_ab = dv_a/dx_b at 3 a + b [1/s] */
-    double *velocity[3]; /* grid velocity at the particle [m/s] */
+    real *gradient[9];     /* g_ab = dt dv_a/dx_b at 3 a + b [1]; free once the material runs */
+    real *displacement[3]; /* of the step, in cell widths */
     /* kinematics writes */
-    double *stored[6];        /* trial strain in the stored form (e, or small strain, or ln J) */
-    double *strain[6];        /* trial, then elastic strain for the material */
-    double *rate[6];          /* d = sym L [1/s] */
-    double *spin[3];          /* (L - L^T)/2: xy, yz, xz [1/s]; zero beyond the dimension */
-    double *volume_ratio;     /* J */
-    double *reference_volume; /* V0 [m^3]; 0 in empty slots */
-    double *weight;           /* averaging weight: mass, 0 in empty slots [kg] */
-    double *divergence;       /* tr d, cell-averaged where the strain is [1/s] */
+    real *strain[6];        /* trial, then elastic strain for the material */
+    real *rate[6];          /* d = sym L [1/s], if a material or the damping wants it */
+    real *spin[3];          /* (L - L^T)/2: xy, yz, xz [1/s]; zero beyond the dimension */
+    real *volume_ratio;     /* J, if a material wants rates */
+    real *volume_increment; /* det(1 + g) - 1 */
+    real *reference_volume; /* V0 [m^3]; 0 in empty slots, and once a particle has left its cell */
     /* the material writes */
-    double *stress[6];
-    double *plastic_strain;
-    double *dissipation;
-    double *history[SCRATCH_HISTORY_MAX];
-    /* move writes, scatter reads */
-    double *force_stress[6]; /* V0 x Kirchhoff stress, with bulk damping [J] */
-    double *mass;            /* [kg]; 0 where the particle has left its cell */
-    /* a second set for compacting one material out of a mixed block */
-    double *compact_strain[6], *compact_rate[6], *compact_spin[3], *compact_stress[6];
-    double *compact_history[SCRATCH_HISTORY_MAX];
-    double *compact_volume_ratio, *compact_plastic_strain, *compact_dissipation;
+    real *stress[6];
+    real *plastic_strain;
+    real *dissipation;
+    real *history[SCRATCH_HISTORY_MAX];
+    /* move writes where particles leave their cells */
+    real *mass; /* [kg]; 0 where the particle has left its cell */
+    /* the damping writes, scatter reads */
+    real *damped_stress[3]; /* diagonal of stress with bulk damping [Pa] */
+    /* anti-locking, and compacting one material out of a mixed block */
+    real *weight, *mean;
+    real *compact_strain[6], *compact_rate[6], *compact_spin[3], *compact_stress[6];
+    real *compact_history[SCRATCH_HISTORY_MAX];
+    real *compact_volume_ratio, *compact_plastic_strain, *compact_dissipation;
 };
 
 /* Makes room for that many slots; contents are lost. 0, or -1 when memory ran out. */

@@ -176,7 +176,7 @@ int sparse_grid_purge(struct sparse_grid *grid)
             block_map_find(&old.map, block_key(place[0] / LANE_COUNT, place[1], place[2]));
         if (source != BLOCK_NONE)
             memcpy(node_values(&grid->nodes, index, 0), node_values(&old, source, 0),
-                   old.layout.component_count * LANE_COUNT * sizeof(double));
+                   old.layout.component_count * LANE_COUNT * sizeof(real));
     }
     node_blocks_release(&old);
     return status;
@@ -202,7 +202,7 @@ size_t sparse_grid_memory(const struct sparse_grid *grid)
 {
     size_t bytes =
         grid->block_capacity * sizeof *grid->blocks +
-        grid->nodes.capacity * (grid->nodes.layout.component_count * LANE_COUNT * sizeof(double) +
+        grid->nodes.capacity * (grid->nodes.layout.component_count * LANE_COUNT * sizeof(real) +
                                 sizeof *grid->nodes.place) +
         (grid->map.capacity + grid->nodes.map.capacity) * 12 +
         grid->tile_block_capacity * (sizeof *grid->tiles + sizeof *grid->tile_blocks);

@@ -6,6 +6,8 @@
 #include "state/sparse_grid.h"
 
 enum { ROWS = 5 };
+#define TIME_STEP 0.125
+#define DENSITY 4.0
 static const double cell_width[3] = {0.5, 0.25, 2.0};
 
 struct bench {
@@ -15,7 +17,18 @@ struct bench {
     const struct shape_kernels *kernels;
     size_t axes, count;
     uint32_t block;
+    _Alignas(64) double volume[ROWS * LANE_COUNT];
 };
+
+static struct particle_block *bench_block(struct bench *bench)
+{
+    return &bench->grid.blocks[bench->block];
+}
+
+static double *values(struct bench *bench, enum particle_field field, size_t component)
+{
+    return particle_values(&bench->grid.layout, bench_block(bench), field, (uint32_t)component);
+}
 
 /* One block with particles at random places, on cell faces and in corners; lane 2 has fewer. */
 static void bench_init(struct bench *bench, const struct shape *shape, size_t axes)
@@ -48,9 +61,9 @@ static void bench_init(struct bench *bench, const struct shape *shape, size_t ax
     }
     bench->count = (size_t)grid->blocks[bench->block].row_count * LANE_COUNT;
     assert_int_equal(block_scratch_reserve(&bench->scratch, bench->count), 0);
-    bench->context = (struct shape_context){.particles = &grid->layout, .nodes = &grid->nodes};
-    for (size_t axis = 0; axis < 3; axis++)
-        bench->context.inverse_cell[axis] = 1.0 / cell_width[axis];
+    bench->context = shape_context_make(&grid->layout, &grid->nodes, cell_width, TIME_STEP);
+    for (size_t slot = 0; slot < bench->count; slot++)
+        bench->volume[slot] = values(bench, PARTICLE_MASS, 0)[slot] / DENSITY;
     bench->kernels = shape->kernels[axes - 1];
 }
 
@@ -58,16 +71,6 @@ static void bench_release(struct bench *bench)
 {
     block_scratch_release(&bench->scratch);
     sparse_grid_release(&bench->grid);
-}
-
-static struct particle_block *bench_block(struct bench *bench)
-{
-    return &bench->grid.blocks[bench->block];
-}
-
-static double *values(struct bench *bench, enum particle_field field, size_t component)
-{
-    return particle_values(&bench->grid.layout, bench_block(bench), field, (uint32_t)component);
 }
 
 static bool filled(struct bench *bench, size_t slot)
@@ -87,7 +90,17 @@ static double particle_position(struct bench *bench, size_t slot, size_t axis)
     return cell_width[axis] * (cell + 0.5 + values(bench, PARTICLE_POSITION, axis)[slot]);
 }
 
-/* v = a + B x at the nodes must come back as v and L = B at the particles. */
+/* What the block scatters: its masses, volumes and the stresses in scratch. */
+static struct scatter_source source_of(struct bench *bench)
+{
+    struct scatter_source source = {.mass = values(bench, PARTICLE_MASS, 0),
+                                    .volume = bench->volume};
+    for (size_t component = 0; component < 6; component++)
+        source.stress[component] = bench->scratch.stress[component];
+    return source;
+}
+
+/* v = a + B x at the nodes must come back as dt v and dt B at the particles. */
 static void check_linear_reproduction(struct bench *bench)
 {
     double a[3], b[3][3];
@@ -115,10 +128,10 @@ static void check_linear_reproduction(struct bench *bench)
             for (size_t axis = 0; axis < bench->axes; axis++) {
                 value += b[row][axis] * particle_position(bench, slot, axis);
                 assert_close(bench->scratch.gradient[3 * row + axis][slot],
-                             filled(bench, slot) ? b[row][axis] : 0.0, 1e-14, 10);
+                             filled(bench, slot) ? TIME_STEP * b[row][axis] : 0.0, 1e-14, 10);
             }
-            assert_close(bench->scratch.velocity[row][slot], filled(bench, slot) ? value : 0.0,
-                         1e-14, 10);
+            assert_close(bench->scratch.displacement[row][slot] * cell_width[row],
+                         filled(bench, slot) ? TIME_STEP * value : 0.0, 1e-14, 10);
         }
     }
 }
@@ -131,7 +144,7 @@ static void check_sums(struct bench *bench)
     const struct node_blocks *nodes = &bench->grid.nodes;
     double expected[20] = {0}, actual[20] = {0};
     for (size_t slot = 0; slot < bench->count; slot++) {
-        const double mass = bench->scratch.mass[slot];
+        const double mass = values(bench, PARTICLE_MASS, 0)[slot];
         expected[0] += mass;
         for (size_t axis = 0; axis < bench->axes; axis++) {
             expected[1 + axis] += mass * particle_position(bench, slot, axis);
@@ -139,7 +152,7 @@ static void check_sums(struct bench *bench)
             static const size_t index[3][3] = {{0, 3, 5}, {3, 1, 4}, {5, 4, 2}};
             for (size_t row = 0; row < bench->axes; row++)
                 expected[10 + 3 * row + axis] -=
-                    bench->scratch.force_stress[index[row][axis]][slot];
+                    bench->volume[slot] * bench->scratch.stress[index[row][axis]][slot];
         }
     }
     for (size_t block = 0; block < nodes->count; block++) {
@@ -165,10 +178,9 @@ static void check_sums(struct bench *bench)
 static void fill_scratch(struct bench *bench)
 {
     uint64_t random = 29;
-    memcpy(bench->scratch.mass, values(bench, PARTICLE_MASS, 0), bench->count * sizeof(double));
     for (size_t component = 0; component < 6; component++) {
         for (size_t slot = 0; slot < bench->count; slot++)
-            bench->scratch.force_stress[component][slot] =
+            bench->scratch.stress[component][slot] =
                 filled(bench, slot) ? random_value(&random) : 0.0;
     }
 }
@@ -201,14 +213,16 @@ static void check_transposes(struct bench *bench)
     static const size_t index[3][3] = {{0, 3, 5}, {3, 1, 4}, {5, 4, 2}};
     for (size_t slot = 0; slot < bench->count; slot++) {
         for (size_t row = 0; row < bench->axes; row++) {
-            material += bench->scratch.mass[slot] * bench->scratch.velocity[row][slot];
+            material += values(bench, PARTICLE_MASS, 0)[slot] *
+                        bench->scratch.displacement[row][slot] * cell_width[row];
             for (size_t axis = 0; axis < bench->axes; axis++)
-                stress_power -= bench->scratch.force_stress[index[row][axis]][slot] *
+                stress_power -= bench->volume[slot] *
+                                bench->scratch.stress[index[row][axis]][slot] *
                                 bench->scratch.gradient[3 * row + axis][slot];
         }
     }
-    assert_close(nodal, material, 1e-13, 30);
-    assert_close(force_power, stress_power, 1e-13, 100);
+    assert_close(TIME_STEP * nodal, material, 1e-13, 30);
+    assert_close(TIME_STEP * force_power, stress_power, 1e-13, 100);
 }
 
 /* One particle at a time gives what all at once give. */
@@ -217,7 +231,8 @@ static void check_scatter_one(struct bench *bench)
     struct node_blocks *nodes = &bench->grid.nodes;
     const size_t size = nodes->count * nodes->layout.component_count * LANE_COUNT;
     clear_nodes(bench);
-    bench->kernels->scatter(&bench->context, bench_block(bench), &bench->scratch, true);
+    const struct scatter_source source = source_of(bench);
+    bench->kernels->scatter(&bench->context, bench_block(bench), &source, true);
     double *all = malloc(size * sizeof *all);
     assert_non_null(all);
     memcpy(all, nodes->values, size * sizeof *all);
@@ -225,7 +240,7 @@ static void check_scatter_one(struct bench *bench)
     for (size_t slot = 0; slot < bench->count; slot++) {
         double stress[6];
         for (size_t component = 0; component < 6; component++)
-            stress[component] = bench->scratch.force_stress[component][slot];
+            stress[component] = bench->volume[slot] * bench->scratch.stress[component][slot];
         if (filled(bench, slot))
             bench->kernels->scatter_one(&bench->context, bench_block(bench), slot, stress, true);
     }
@@ -280,7 +295,8 @@ static void test_shapes(void **state)
             check_linear_reproduction(&bench);
             fill_scratch(&bench);
             clear_nodes(&bench);
-            bench.kernels->scatter(&bench.context, bench_block(&bench), &bench.scratch, true);
+            const struct scatter_source source = source_of(&bench);
+            bench.kernels->scatter(&bench.context, bench_block(&bench), &source, true);
             check_sums(&bench);
             check_transposes(&bench);
             check_scatter_one(&bench);
