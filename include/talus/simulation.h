@@ -114,7 +114,7 @@ size_t talus_simulation_read_nodes(const struct talus_simulation *simulation, do
 /* ---- checkpoints: the state as named arrays of raw bytes ---- */
 struct talus_blob {
     char name[64];
-    const void *data; /* valid until the simulation is stepped or destroyed */
+    const void *data; /* a copy, valid until the next checkpoint or the end of the simulation */
     size_t bytes;
 };
 /* The complete state. The array belongs to the simulation. NULL when memory ran out. */

@@ -113,12 +113,11 @@ enum talus_status history_flush(struct history *history, struct talus_error *err
     return TALUS_OK;
 }
 
-enum talus_status history_sync(struct history *history, struct talus_error *error)
+enum talus_status history_sync(const struct history *history, struct talus_error *error)
 {
-    enum talus_status status = history_flush(history, error);
-    if (status == TALUS_OK && fsync(history->descriptor) != 0)
-        status = file_error(error, errno, "sync", PROTOCOL_HISTORY_FILE);
-    return status;
+    if (fsync(history->descriptor) != 0)
+        return file_error(error, errno, "sync", PROTOCOL_HISTORY_FILE);
+    return TALUS_OK;
 }
 
 void history_close(struct history *history)

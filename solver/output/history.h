@@ -28,8 +28,9 @@ TALUS_MUST_CHECK enum talus_status history_add(struct history *history, double *
 /* All rows are in the file (readable by others). */
 TALUS_MUST_CHECK enum talus_status history_flush(struct history *history,
                                                  struct talus_error *error);
-/* All rows are on the disk. */
-TALUS_MUST_CHECK enum talus_status history_sync(struct history *history, struct talus_error *error);
+/* All rows that are in the file are on the disk. May be called while another thread adds rows. */
+TALUS_MUST_CHECK enum talus_status history_sync(const struct history *history,
+                                                struct talus_error *error);
 void history_close(struct history *history);
 
 /* A history as it lies on the disk, this job's or another's; only whole rows. */

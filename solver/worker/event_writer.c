@@ -61,8 +61,7 @@ enum talus_status event_open(struct event_writer *writer, const char *folder,
 {
     char path[FILE_PATH_SIZE];
     struct stat information;
-    memset(writer, 0, sizeof *writer);
-    writer->descriptor = -1;
+    *writer = (struct event_writer){.descriptor = -1, .mutex = PTHREAD_MUTEX_INITIALIZER};
     enum talus_status status = file_path(path, folder, PROTOCOL_EVENTS_FILE, error);
     if (status != TALUS_OK)
         return status;
@@ -110,22 +109,33 @@ static char *make_line(const struct event_writer *writer, enum protocol_message 
     return text;
 }
 
+/* One whole line at the end of the file, or none; 0 or an errno value. */
+static int append_line(const struct event_writer *writer, const char *line, size_t length)
+{
+    off_t end = lseek(writer->descriptor, 0, SEEK_END);
+    int failure = file_write_all(writer->descriptor, line, length);
+    if (failure != 0 && end >= 0 && ftruncate(writer->descriptor, end) != 0)
+        failure = errno;
+    return failure;
+}
+
 enum talus_status event_write(struct event_writer *writer, enum protocol_message message,
                               json_t *fields, struct talus_error *error)
 {
     size_t length = 0;
+    int failure = 0;
+    (void)pthread_mutex_lock(&writer->mutex);
     char *line = make_line(writer, message, fields, &length);
+    if (line != NULL)
+        failure = append_line(writer, line, length);
+    (void)pthread_mutex_unlock(&writer->mutex);
     json_decref(fields);
     if (line == NULL)
         return talus_error_set(error, TALUS_MEMORY, "memory", "", "out of memory for an event");
-    off_t end = lseek(writer->descriptor, 0, SEEK_END);
-    int failure = file_write_all(writer->descriptor, line, length);
     free(line);
-    if (failure == 0)
-        return TALUS_OK;
-    if (end >= 0 && ftruncate(writer->descriptor, end) != 0)
-        failure = errno;
-    return file_error(error, failure, "append to", PROTOCOL_EVENTS_FILE);
+    if (failure != 0)
+        return file_error(error, failure, "append to", PROTOCOL_EVENTS_FILE);
+    return TALUS_OK;
 }
 
 enum talus_status event_sync(struct event_writer *writer, struct talus_error *error)

@@ -2,12 +2,13 @@
 #include "worker/job_run.h"
 
 #include <stdio.h>
+#include <stdlib.h>
 
 /* Seconds between history events; between progress lines where nobody watches. */
 static const double history_interval = 0.25;
 static const double print_interval_plain = 10.0, print_interval_terminal = 0.25;
 /* Tables are replaced at checkpoints as long as that costs less than this share of the time. */
-static const double tables_share = 0.05;
+static const double tables_share = 0.02;
 /* So many warnings are passed on, then one that says so. */
 enum { WARNING_MAX = 200 };
 
@@ -112,6 +113,32 @@ static enum talus_status keep_events(struct job_run *run, double now, struct tal
     return status;
 }
 
+/* Tables of the rows so far, replaced in the background. */
+struct tables_task {
+    struct job_run *run;
+    uint64_t row_count;
+};
+
+static enum talus_status replace_tables(void *context, struct talus_error *error)
+{
+    const struct tables_task *tables = context;
+    double begin = job_now();
+    enum talus_status status = job_write_tables(tables->run, tables->row_count, NULL, error);
+    tables->run->tables_cost = job_now() - begin;
+    return status;
+}
+
+static enum talus_status give_tables(struct job_run *run, struct talus_error *error)
+{
+    struct tables_task *tables = malloc(sizeof *tables);
+    if (tables == NULL)
+        return talus_error_set(error, TALUS_MEMORY, "memory", "", "out of memory for tables");
+    /* The checkpoint before has flushed the rows. */
+    *tables = (struct tables_task){.run = run, .row_count = run->history.written};
+    const struct writer_task task = {replace_tables, free, tables};
+    return writer_give(run->writer, &task, error);
+}
+
 static enum talus_status keep_checkpoints(struct job_run *run, double now,
                                           struct talus_error *error)
 {
@@ -119,20 +146,18 @@ static enum talus_status keep_checkpoints(struct job_run *run, double now,
     if (!(every > 0.0) || now - run->clock.checkpoint < every)
         return TALUS_OK;
     enum talus_status status = job_write_checkpoint(run, error);
-    double since = now - run->clock.tables;
-    if (status == TALUS_OK && run->clock.tables_cost <= tables_share * since) {
-        double begin = job_now();
-        status = job_write_tables(run, NULL, error);
-        run->clock.tables = begin;
-        run->clock.tables_cost = job_now() - begin;
-    }
-    return status;
+    if (status != TALUS_OK || run->tables_cost > tables_share * (now - run->clock.tables))
+        return status;
+    run->clock.tables = now;
+    return give_tables(run, error);
 }
 
 static enum talus_status stop(struct job_run *run, enum talus_status reason, const char *code,
                               const char *text, struct talus_error *error)
 {
     enum talus_status status = job_write_checkpoint(run, error);
+    if (status == TALUS_OK)
+        status = writer_drain(run->writer, error);
     return status != TALUS_OK ? status : talus_error_set(error, reason, code, "", "%s", text);
 }
 
@@ -147,8 +172,8 @@ enum talus_status job_attend(struct job_run *run, double now, struct talus_error
     if (limit > 0.0 && now - run->clock.start > limit)
         return stop(run, TALUS_LIMIT, "time_limit",
                     "the wall clock limit is reached; --resume goes on from here", error);
-    enum talus_status status = TALUS_OK;
-    if (request.look)
+    enum talus_status status = writer_check(run->writer, error);
+    if (status == TALUS_OK && request.look)
         status = job_steer(run, false, error);
     if (status == TALUS_OK)
         status = keep_events(run, now, error);

@@ -57,56 +57,107 @@ static int read_counters(const json_t *root, struct job_counters *counters)
     return result;
 }
 
-static char *state_text(const struct job_run *run)
+/* A restart point on its way to the disk. The blobs belong to the simulation, which keeps them
+ * until the next restart point is captured. */
+struct checkpoint_task {
+    struct job_run *run;
+    const struct talus_blob *blobs;
+    size_t blob_count;
+    double time; /* [s] */
+    uint64_t step, row_count;
+    json_t *counters;
+};
+
+static char *state_text(const struct checkpoint_task *task)
 {
-    json_t *root = json_pack("{s:i, s:s, s:s, s:I, s:o, s:o}", "format", CHECKPOINT_FORMAT,
-                             "scene_hash", run->scene_hash, "build", talus_build(), "row",
-                             (json_int_t)run->history.row_count, "counters", counters_json(run),
-                             "frames", frame_list_json(&run->frames));
+    const struct job_run *run = task->run;
+    json_t *root =
+        json_pack("{s:i, s:s, s:s, s:I, s:O, s:o}", "format", CHECKPOINT_FORMAT, "scene_hash",
+                  run->scene_hash, "build", talus_build(), "row", (json_int_t)task->row_count,
+                  "counters", task->counters, "frames", frame_list_json(&run->frames));
     char *text = root == NULL ? NULL : json_dumps(root, JSON_COMPACT);
     json_decref(root);
     return text;
 }
 
-static enum talus_status write_file(struct job_run *run, struct talus_error *error)
+static enum talus_status write_file(const struct checkpoint_task *task, struct talus_error *error)
 {
     char path[FILE_PATH_SIZE];
-    size_t blob_count = 0;
     enum talus_status status =
-        file_path(path, run->options->folder, PROTOCOL_CHECKPOINT_FILE, error);
+        file_path(path, task->run->options->folder, PROTOCOL_CHECKPOINT_FILE, error);
     if (status != TALUS_OK)
         return status;
-    char *state = state_text(run);
-    const struct talus_blob *blobs = talus_simulation_checkpoint(run->simulation, &blob_count);
-    if (state == NULL || blobs == NULL)
-        status =
-            talus_error_set(error, TALUS_MEMORY, "memory", "", "out of memory for a checkpoint");
-    else
-        status = checkpoint_write(path, state, blobs, blob_count, error);
+    char *state = state_text(task);
+    if (state == NULL)
+        return talus_error_set(error, TALUS_MEMORY, "memory", "", "out of memory for a checkpoint");
+    status = checkpoint_write(path, state, task->blobs, task->blob_count, error);
     free(state);
     return status;
 }
 
-enum talus_status job_write_checkpoint(struct job_run *run, struct talus_error *error)
+static enum talus_status write_checkpoint(void *context, struct talus_error *error)
 {
-    struct talus_simulation_state state;
-    talus_simulation_get_state(run->simulation, &state);
+    const struct checkpoint_task *task = context;
+    struct job_run *run = task->run;
     /* What the checkpoint counts on must be on the disk before it is. */
-    enum talus_status status = job_announce_history(run, error);
-    if (status == TALUS_OK)
-        status = history_sync(&run->history, error);
+    enum talus_status status = history_sync(&run->history, error);
     if (status == TALUS_OK)
         status = event_sync(&run->events, error);
     if (status == TALUS_OK)
-        status = write_file(run, error);
-    run->clock.checkpoint = job_now();
+        status = write_file(task, error);
     if (status != TALUS_OK)
         return status;
     return event_write(&run->events, PROTOCOL_CHECKPOINT,
-                       json_pack("{s:f, s:I, s:I, s:I}", "time", state.time, "step",
-                                 (json_int_t)state.step, "row", (json_int_t)run->history.row_count,
+                       json_pack("{s:f, s:I, s:I, s:I}", "time", task->time, "step",
+                                 (json_int_t)task->step, "row", (json_int_t)task->row_count,
                                  "frame", (json_int_t)run->frames.count),
                        error);
+}
+
+static void release_checkpoint(void *context)
+{
+    struct checkpoint_task *task = context;
+    task->run->checkpoint_under_way = false;
+    json_decref(task->counters);
+    free(task);
+}
+
+/* NULL when memory ran out. */
+static struct checkpoint_task *capture(struct job_run *run)
+{
+    struct talus_simulation_state state;
+    struct checkpoint_task *task = calloc(1, sizeof *task);
+    if (task == NULL)
+        return NULL;
+    talus_simulation_get_state(run->simulation, &state);
+    *task = (struct checkpoint_task){.run = run,
+                                     .time = state.time,
+                                     .step = state.step,
+                                     .row_count = run->history.row_count,
+                                     .counters = counters_json(run)};
+    task->blobs = talus_simulation_checkpoint(run->simulation, &task->blob_count);
+    run->checkpoint_under_way = true;
+    if (task->blobs != NULL && task->counters != NULL)
+        return task;
+    release_checkpoint(task);
+    return NULL;
+}
+
+enum talus_status job_write_checkpoint(struct job_run *run, struct talus_error *error)
+{
+    enum talus_status status = job_announce_history(run, error);
+    /* One restart point at a time: their blobs share their memory. */
+    if (status == TALUS_OK && run->checkpoint_under_way)
+        status = writer_drain(run->writer, error);
+    if (status != TALUS_OK)
+        return status;
+    struct checkpoint_task *checkpoint = capture(run);
+    if (checkpoint == NULL)
+        return talus_error_set(error, TALUS_MEMORY, "memory", "", "out of memory for a checkpoint");
+    const struct writer_task task = {write_checkpoint, release_checkpoint, checkpoint};
+    status = writer_give(run->writer, &task, error);
+    run->clock.checkpoint = job_now();
+    return status;
 }
 
 static enum talus_status not_usable(struct talus_error *error, const char *why)

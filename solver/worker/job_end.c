@@ -52,16 +52,17 @@ static enum talus_status write_csv(const struct job_run *run, const struct histo
     return status;
 }
 
-enum talus_status job_write_tables(struct job_run *run, const char *receipt,
-                                   struct talus_error *error)
+enum talus_status job_write_tables(const struct job_run *run, uint64_t row_count,
+                                   const char *receipt, struct talus_error *error)
 {
     char path[FILE_PATH_SIZE];
     struct history_table table;
-    enum talus_status status = job_announce_history(run, error);
-    if (status == TALUS_OK)
-        status = history_table_open(&table, run->options->folder, error);
+    enum talus_status status = history_table_open(&table, run->options->folder, error);
     if (status != TALUS_OK)
         return status;
+    /* Rows that are being appended now may be cut again. */
+    if (table.row_count > row_count)
+        table.row_count = row_count;
     status = write_csv(run, &table, "history.csv", "", error);
     if (status == TALUS_OK)
         status = write_csv(run, &table, "reactions.csv", "reaction.", error);
@@ -135,6 +136,15 @@ static int end_in_folder(struct job_run *run, enum talus_status outcome, struct 
 {
     struct talus_error failure = {.status = TALUS_OK};
     json_t *metrics = NULL;
+    /* What is still to be written, and from here on everything is done by this thread. An error
+     * there came before the one that ended the loop. */
+    enum talus_status written =
+        run->writer == NULL ? TALUS_OK : writer_finish(run->writer, &failure);
+    if (written != TALUS_OK) {
+        outcome = written;
+        *error = failure;
+        failure = (struct talus_error){.status = TALUS_OK};
+    }
     bool can_write = outcome != TALUS_MEMORY &&
                      !(outcome == TALUS_LIMIT && strcmp(error->code, "disk_limit") == 0);
     if (outcome == TALUS_OK)
@@ -177,6 +187,7 @@ int job_end(struct job_run *run, enum talus_status outcome, struct talus_error *
 
 void job_release(struct job_run *run)
 {
+    writer_destroy(run->writer);
     history_close(&run->history);
     frame_list_release(&run->frames);
     talus_simulation_destroy(run->simulation);

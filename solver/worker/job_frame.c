@@ -6,6 +6,7 @@
 
 #include <errno.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <sys/stat.h>
 
 /* Path of "FOLDER/PREFIX_NNNNNN.EXTENSION" below the job's folder. */
@@ -58,9 +59,6 @@ static enum talus_status announce_frame(struct job_run *run, const struct frame 
     size_t number = run->frames.count - 1;
     const struct frame_entry *entry = &run->frames.entries[number];
     (void)snprintf(name, sizeof name, "frames/frame_%06zu.hdf", number);
-    enum talus_status status = job_announce_history(run, error);
-    if (status != TALUS_OK)
-        return status;
     json_t *event = json_pack("{s:I, s:f, s:I, s:I, s:o, s:I, s:s, s:s}", "n", (json_int_t)number,
                               "time", entry->time, "step", (json_int_t)entry->step, "particles",
                               (json_int_t)entry->particles, "fields", field_names(frame), "bytes",
@@ -69,18 +67,13 @@ static enum talus_status announce_frame(struct job_run *run, const struct frame 
 }
 
 /* frames/grid_NNNNNN.hdf, on request; before the frame it belongs to is counted. */
-static enum talus_status write_grid(struct job_run *run, struct talus_error *error)
+static enum talus_status write_grid(const struct job_run *run, const struct frame *grid,
+                                    struct talus_error *error)
 {
     char path[FILE_PATH_SIZE];
-    struct frame frame;
-    const struct talus_output_options *output = &run->scene.output;
-    enum talus_status status =
-        frame_capture_grid(&frame, run->simulation, output->grid_fields, error);
+    enum talus_status status = numbered_path(path, run, "frames/grid", "hdf", error);
     if (status == TALUS_OK)
-        status = numbered_path(path, run, "frames/grid", "hdf", error);
-    if (status == TALUS_OK)
-        status = frame_write_vtkhdf(&frame, path, output->frame_double, error);
-    frame_release(&frame);
+        status = frame_write_vtkhdf(grid, path, run->scene.output.frame_double, error);
     return status;
 }
 
@@ -101,45 +94,77 @@ static enum talus_status write_lists(const struct job_run *run, struct talus_err
     return status;
 }
 
-static enum talus_status write_frame(struct job_run *run, const struct frame *frame,
-                                     struct talus_error *error)
+/* A frame on its way to the disk. */
+struct frame_task {
+    struct job_run *run;
+    struct frame particles, grid;
+};
+
+static enum talus_status write_frame(void *context, struct talus_error *error)
 {
     char path[FILE_PATH_SIZE];
+    const struct frame_task *task = context;
+    struct job_run *run = task->run;
     const struct talus_output_options *output = &run->scene.output;
     enum talus_status status = TALUS_OK;
     if (output->vtu) {
         status = numbered_path(path, run, "vtk/frame", "vtu", error);
         if (status == TALUS_OK)
-            status = frame_write_vtu(frame, path, output->frame_double, error);
+            status = frame_write_vtu(&task->particles, path, output->frame_double, error);
     }
     if (status == TALUS_OK && output->grid_fields != 0)
-        status = write_grid(run, error);
+        status = write_grid(run, &task->grid, error);
     if (status == TALUS_OK)
         status = numbered_path(path, run, "frames/frame", "hdf", error);
     if (status == TALUS_OK)
-        status = frame_write_vtkhdf(frame, path, output->frame_double, error);
+        status = frame_write_vtkhdf(&task->particles, path, output->frame_double, error);
     if (status == TALUS_OK)
-        status = note_frame(run, frame, path, error);
+        status = note_frame(run, &task->particles, path, error);
     if (status == TALUS_OK)
         status = write_lists(run, error);
     if (status == TALUS_OK)
-        status = announce_frame(run, frame, error);
+        status = announce_frame(run, &task->particles, error);
+    return status;
+}
+
+static void release_frame(void *context)
+{
+    struct frame_task *task = context;
+    frame_release(&task->particles);
+    frame_release(&task->grid);
+    free(task);
+}
+
+static enum talus_status capture(struct frame_task *task, struct talus_error *error)
+{
+    const struct talus_output_options *output = &task->run->scene.output;
+    const struct talus_simulation *simulation = task->run->simulation;
+    enum talus_status status =
+        frame_capture(&task->particles, simulation, output->frame_fields, error);
+    if (status == TALUS_OK && output->grid_fields != 0)
+        status = frame_capture_grid(&task->grid, simulation, output->grid_fields, error);
     return status;
 }
 
 enum talus_status job_take_frame(struct job_run *run, struct talus_error *error)
 {
     struct talus_simulation_state state;
-    struct frame frame;
     talus_simulation_get_state(run->simulation, &state);
     if (run->counters.framed_step == state.step)
         return TALUS_OK;
-    enum talus_status status =
-        frame_capture(&frame, run->simulation, run->scene.output.frame_fields, error);
+    struct frame_task *frame = calloc(1, sizeof *frame);
+    if (frame == NULL)
+        return talus_error_set(error, TALUS_MEMORY, "memory", "", "out of memory for a frame");
+    frame->run = run;
+    enum talus_status status = capture(frame, error);
+    /* Rows up to the frame are told before it. */
     if (status == TALUS_OK)
-        status = write_frame(run, &frame, error);
-    frame_release(&frame);
-    if (status == TALUS_OK)
-        run->counters.framed_step = state.step;
-    return status;
+        status = job_announce_history(run, error);
+    if (status != TALUS_OK) {
+        release_frame(frame);
+        return status;
+    }
+    run->counters.framed_step = state.step;
+    const struct writer_task task = {write_frame, release_frame, frame};
+    return writer_give(run->writer, &task, error);
 }

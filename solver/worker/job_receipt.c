@@ -91,7 +91,7 @@ static enum talus_status write_results(struct job_run *run, const json_t *receip
     char *text = json_dumps(receipt, JSON_INDENT(2));
     if (text == NULL)
         return talus_error_set(error, TALUS_MEMORY, "memory", "", "out of memory for a receipt");
-    status = job_write_tables(run, text, error);
+    status = job_write_tables(run, run->history.row_count, text, error);
     free(text);
     if (status == TALUS_OK)
         status = add_result(run, results, "results.h5", error);

@@ -6,13 +6,18 @@
  *   job_end     audit, tables, metrics, receipt, last event
  *
  * Looking never changes the run: when rows and frames are taken depends on the simulation alone,
- * never on the clock. Only checkpoints, events and tables follow the clock. */
+ * never on the clock. Only checkpoints, events and tables follow the clock.
+ *
+ * What is slow to write (frames, checkpoints, tables) is captured between two steps and written by
+ * the background writer, in order; a checkpoint counts on the rows, events and frames before it.
+ * While its thread lives it owns `frames` and everything that uses HDF5; `events` is shared. */
 #ifndef TALUS_JOB_RUN_H
 #define TALUS_JOB_RUN_H
 
 #include "output/history.h"
 #include "scene/scene_json.h"
 #include "talus/simulation.h"
+#include "worker/background_writer.h"
 #include "worker/control.h"
 #include "worker/event_writer.h"
 #include "worker/frame_list.h"
@@ -43,11 +48,10 @@ struct job_counters {
 /* Monotonic times [s] of this attempt. */
 struct job_clock {
     double start;
-    double attended;    /* signals, limits and events were last seen to */
-    double checkpoint;  /* last restart point */
-    double history;     /* last history event */
-    double tables;      /* history.csv and results.h5 were last replaced ... */
-    double tables_cost; /* ... which took so long */
+    double attended;   /* signals, limits and events were last seen to */
+    double checkpoint; /* last restart point */
+    double history;    /* last history event */
+    double tables;     /* history.csv and results.h5 were last replaced */
     double progress, printed;
     double start_time;     /* simulation time [s] when this attempt began */
     double particle_steps; /* at the last progress line */
@@ -68,7 +72,10 @@ struct job_run {
     size_t column_count;
     double *last_row; /* [column_count] */
     struct history history;
+    struct background_writer *writer; /* owned */
     struct frame_list frames;
+    _Atomic double tables_cost; /* [s] that replacing history.csv and results.h5 took */
+    _Atomic bool checkpoint_under_way;
     struct job_counters counters;
     struct job_clock clock;
     uint64_t warning_count;
@@ -83,7 +90,8 @@ TALUS_MUST_CHECK enum talus_status job_start(struct job_run *run, struct talus_e
 
 /* job_loop.c: until the end of the simulated time, or TALUS_CANCELLED, TALUS_LIMIT, ... */
 TALUS_MUST_CHECK enum talus_status job_loop(struct job_run *run, struct talus_error *error);
-/* A row or frame of the present state, unless there is one of this step already. */
+/* A row or frame of the present state, unless there is one of this step already. The frame is
+ * written, and announced, in the background. */
 TALUS_MUST_CHECK enum talus_status job_take_sample(struct job_run *run, struct talus_error *error);
 TALUS_MUST_CHECK enum talus_status job_take_frame(struct job_run *run, struct talus_error *error);
 
@@ -100,6 +108,7 @@ TALUS_MUST_CHECK enum talus_status job_announce_history(struct job_run *run,
                                                         struct talus_error *error);
 
 /* job_checkpoint.c */
+/* A restart point of the present state, written in the background. */
 TALUS_MUST_CHECK enum talus_status job_write_checkpoint(struct job_run *run,
                                                         struct talus_error *error);
 /* Restores simulation, counters and list of frames, and sets *row to the rows that stand.
@@ -119,9 +128,10 @@ TALUS_MUST_CHECK enum talus_status job_warn(struct job_run *run, const char *cod
                                             struct talus_error *error);
 
 /* job_end.c */
-/* history.csv, reactions.csv and results.h5 from the rows so far. */
-TALUS_MUST_CHECK enum talus_status job_write_tables(struct job_run *run, const char *receipt,
-                                                    struct talus_error *error);
+/* history.csv, reactions.csv and results.h5 from the first `row_count` rows, which are in the file.
+ */
+TALUS_MUST_CHECK enum talus_status job_write_tables(const struct job_run *run, uint64_t row_count,
+                                                    const char *receipt, struct talus_error *error);
 /* Ends a run that came out of start or loop with `outcome` (*error says more when it is not
  * TALUS_OK): writes what is left to write and the last event, prints the reason, and returns the
  * exit code. */

@@ -31,6 +31,8 @@ struct talus_simulation {
     size_t column_count;
     struct talus_metric metrics[3];
     struct talus_blob blobs[BLOB_COUNT];
+    double *saved; /* [2 * particle_count] heights and velocities of the last checkpoint */
+    struct fake_state saved_state;
 };
 
 static long read_word(const char *title, const char *key, long fallback)
@@ -119,6 +121,7 @@ void talus_simulation_destroy(struct talus_simulation *simulation)
     free(simulation->height);
     free(simulation->velocity);
     free(simulation->columns);
+    free(simulation->saved);
     free(simulation);
 }
 
@@ -319,13 +322,21 @@ size_t talus_simulation_read_nodes(const struct talus_simulation *simulation, do
 const struct talus_blob *talus_simulation_checkpoint(struct talus_simulation *simulation,
                                                      size_t *count)
 {
-    size_t bytes = simulation->particle_count * sizeof(double);
+    size_t count_of_particles = simulation->particle_count;
+    size_t bytes = count_of_particles * sizeof(double);
+    free(simulation->saved);
+    simulation->saved = malloc(2 * bytes + 1);
+    if (simulation->saved == NULL)
+        return NULL;
+    simulation->saved_state = simulation->state;
+    memcpy(simulation->saved, simulation->height, bytes);
+    memcpy(simulation->saved + count_of_particles, simulation->velocity, bytes);
     simulation->blobs[0] = (struct talus_blob){
-        .name = "state", .data = &simulation->state, .bytes = sizeof simulation->state};
+        .name = "state", .data = &simulation->saved_state, .bytes = sizeof simulation->saved_state};
     simulation->blobs[1] =
-        (struct talus_blob){.name = "height", .data = simulation->height, .bytes = bytes};
-    simulation->blobs[2] =
-        (struct talus_blob){.name = "velocity", .data = simulation->velocity, .bytes = bytes};
+        (struct talus_blob){.name = "height", .data = simulation->saved, .bytes = bytes};
+    simulation->blobs[2] = (struct talus_blob){
+        .name = "velocity", .data = simulation->saved + count_of_particles, .bytes = bytes};
     *count = BLOB_COUNT;
     return simulation->blobs;
 }

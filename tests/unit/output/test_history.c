@@ -39,6 +39,7 @@ static void write_rows(const char *folder, uint64_t keep, uint64_t end)
     struct talus_error error = {.status = TALUS_OK};
     assert_int_equal(history_open(&history, folder, columns, COLUMN_COUNT, keep, &error), TALUS_OK);
     add_rows(&history, keep, end);
+    assert_int_equal(history_flush(&history, &error), TALUS_OK);
     assert_int_equal(history_sync(&history, &error), TALUS_OK);
     history_close(&history);
 }
