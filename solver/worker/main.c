@@ -24,7 +24,8 @@ static void print_usage(FILE *stream)
 
 int main(int argument_count, char **arguments)
 {
-    isa_switch(arguments);
+    if (!isa_switch(arguments))
+        return PROTOCOL_EXIT_OTHER;
     if (argument_count < 2) {
         print_usage(stderr);
         return PROTOCOL_EXIT_OTHER;
