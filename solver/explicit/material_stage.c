@@ -143,6 +143,15 @@ static void history_arrays(const struct run *run, const struct particle_block *b
         history[index] = particle_values(&run->grid.layout, block, PARTICLE_HISTORY, index);
 }
 
+/* What a model does not write is zero. */
+static void clear_unwritten(const struct material *model, const struct material_batch *batch)
+{
+    if (!model->plastic)
+        memset(batch->plastic_strain, 0, batch->count * sizeof(real));
+    if (!model->dissipates)
+        memset(batch->dissipation, 0, batch->count * sizeof(real));
+}
+
 static void update_single(const struct run *run, const struct particle_block *block,
                           struct block_scratch *scratch, size_t material, double time_step)
 {
@@ -163,6 +172,7 @@ static void update_single(const struct run *run, const struct particle_block *bl
     for (size_t component = 0; run->finite_strain && component < 3; component++)
         batch.spin[component] = scratch->spin[component];
     run->materials[material].model->update_stress(run->materials[material].constants, &batch);
+    clear_unwritten(run->materials[material].model, &batch);
 }
 
 /* Copies the slots of one material side by side, and fills the last row with slots at rest. Returns
@@ -243,6 +253,7 @@ static void update_compacted(const struct run *run, const struct particle_block 
     for (size_t component = 0; run->finite_strain && component < 3; component++)
         batch.spin[component] = scratch->compact_spin[component];
     run->materials[material].model->update_stress(run->materials[material].constants, &batch);
+    clear_unwritten(run->materials[material].model, &batch);
     spread_slots(run, block, scratch, material, history);
 }
 

@@ -20,98 +20,282 @@ struct cap {
     double tangent_norm;      /* |s|_t [Pa] */
 };
 
-struct cap_point {
-    double first, norm; /* I1, |s| [Pa] */
+struct cap_law { /* what the loops compute with */
+    struct stiffness stiffness;
+    real slope, strength;
+    real flow_bulk; /* fall of I1 over the multiplier of the cone [Pa] */
+    real inverse;   /* multiplier over what is beyond the cone [1/Pa] */
+    real radius, radius_square, tangent_invariant, tangent_norm;
+    real wedge_norm, wedge_first,
+        wedge;                        /* positive between the flow directions of cone and circle */
+    real shear_inverse, bulk_inverse; /* 1/(2 G) and 1/(9 K) */
 };
 
-/* Associated return to the circle: s = s_tr/(1 + 4 G x), I1 = I1_tr/(1 + 18 K x) with
- * n(x) = |(I1, |s|)| = R_t. 1/n - 1/R_t is concave and increasing, so that Newton's iteration from
- * any point below the root stays below it; it starts where the faster of the two decays alone would
- * end. The result is scaled onto the circle, which removes the last round-off. */
-static inline struct cap_point cap_return_to_circle(const struct cap *cap, struct cap_point trial)
+static inline struct cap_law cap_law_of(const struct cap *cap)
 {
-    enum { ITERATION_MAX = 60 };
-    double shear = 4.0 * cap->elasticity.shear;
-    double bulk = 18.0 * cap->elasticity.bulk;
-    double excess = sqrt(trial.first * trial.first + trial.norm * trial.norm) / cap->radius;
-    double multiplier = (excess - 1.0) / maximum(shear, bulk);
-    struct cap_point point = trial;
-    for (int iteration = 0; iteration < ITERATION_MAX; iteration++) {
-        double shear_divisor = 1.0 + shear * multiplier;
-        double bulk_divisor = 1.0 + bulk * multiplier;
-        point.norm = trial.norm / shear_divisor;
-        point.first = trial.first / bulk_divisor;
-        double square = point.norm * point.norm + point.first * point.first;
-        excess = sqrt(square) / cap->radius;
-        if (excess <= 1.0 + 1e-14)
-            break;
-        double decay = shear * point.norm * point.norm / shear_divisor +
-                       bulk * point.first * point.first / bulk_divisor;
-        multiplier += (excess - 1.0) * square / decay;
-    }
-    point.norm /= excess;
-    point.first /= excess;
-    return point;
+    const double shear = 2.0 * cap->elasticity.shear;
+    const double bulk = 9.0 * cap->elasticity.bulk;
+    const double flow_bulk = bulk * cap->flow_slope;
+    return (struct cap_law){
+        .stiffness = elasticity_stiffness(&cap->elasticity),
+        .slope = (real)cap->slope,
+        .strength = (real)cap->strength,
+        .flow_bulk = (real)flow_bulk,
+        .inverse = (real)(1.0 / (shear + flow_bulk * cap->slope)),
+        .radius = (real)cap->radius,
+        .radius_square = (real)(cap->radius * cap->radius),
+        .tangent_invariant = (real)cap->tangent_invariant,
+        .tangent_norm = (real)cap->tangent_norm,
+        .wedge_norm = (real)(bulk * cap->tangent_invariant),
+        .wedge_first = (real)(shear * cap->tangent_norm),
+        .wedge = (real)((bulk - shear) * cap->tangent_invariant * cap->tangent_norm),
+        .shear_inverse = (real)(1.0 / shear),
+        .bulk_inverse = (real)(1.0 / bulk),
+    };
 }
 
-/* The cone where its return ends before the tangent point; all slots at once. Slots beyond it are
- * marked by a negative scale. */
-TALUS_INLINE void cap_return_to_cone(const struct cap *cap, size_t count,
-                                     struct invariants *invariants)
+/* Marks the slots beyond the surface by a positive plastic strain; the others get what they
+ * dissipate: nothing. */
+static inline void cap_mark_yielding(const struct cap_law *constants,
+                                     const struct material_batch *batch, size_t begin, size_t count,
+                                     const struct invariants *invariants)
 {
-    const struct cap c = *cap;
-    double shear = 2.0 * c.elasticity.shear;
-    double bulk = 9.0 * c.elasticity.bulk * c.flow_slope;
-    double inverse = 1.0 / (shear + bulk * c.slope);
+    const struct cap_law law = *constants;
+    real *plastic_strain = batch->plastic_strain + begin;
+    real *dissipation = batch->dissipation + begin;
+    count = whole_rows(count);
 #pragma omp simd
     for (size_t index = 0; index < count; index++) {
-        double first = invariants->trial[index];
-        double norm = invariants->norm[index];
-        double cone = norm + c.slope * first - c.strength;
-        double circle = norm * norm + first * first - c.radius * c.radius;
-        double multiplier = maximum(cone, 0.0) * inverse;
-        double returned = first - bulk * multiplier;
-        double scale = 1.0 - shear * multiplier / (norm > 0.0 ? norm : 1.0);
-        bool beyond = returned > c.tangent_invariant; /* never with a negative |s| otherwise */
-        bool inside = first > c.tangent_invariant && circle <= 0.0;
-        double other = inside ? 1.0 : -1.0;
-        invariants->first[index] = beyond ? first : returned;
-        invariants->scale[index] = beyond ? other : scale;
+        real first = invariants->first[index];
+        real norm = invariants->norm[index];
+        real cone = norm + law.slope * first - law.strength;
+        real circle = norm * norm + first * first - law.radius_square;
+        plastic_strain[index] = maximum(first > law.tangent_invariant ? circle : cone, 0);
+        dissipation[index] = 0;
     }
 }
 
-/* The slots that the cone's return left: circle, or the tangent point for trials between the flow
- * directions of the two surfaces. */
-static inline void cap_return_beyond_cone(const struct cap *cap, size_t count,
-                                          struct invariants *invariants)
+/* Cone and tangent point. The flow of the cone meets the tangent point or passes it; trials from
+ * there to the flow direction of the circle at that point,
+ *
+ *   (I1 - I_t) / (|s| - |s|_t) = 9 K I_t / (2 G |s|_t),
+ *
+ * return to it. Slots that are left to the circle stay as they are and are marked by a negative
+ * plastic strain. */
+static inline void cap_return_to_cone(const struct cap_law *constants,
+                                      const struct material_batch *batch, size_t begin,
+                                      size_t count, struct invariants *invariants)
 {
+    const struct cap_law law = *constants;
+    real *plastic_strain = batch->plastic_strain + begin;
+    real *dissipation = batch->dissipation + begin;
+    count = whole_rows(count);
+#pragma omp simd
     for (size_t index = 0; index < count; index++) {
-        if (invariants->scale[index] >= 0.0)
-            continue;
-        struct cap_point trial = {invariants->trial[index], invariants->norm[index]};
-        struct cap_point point = {cap->tangent_invariant, cap->tangent_norm};
-        if (trial.first > cap->tangent_invariant) {
-            struct cap_point on_circle = cap_return_to_circle(cap, trial);
-            if (on_circle.first >= cap->tangent_invariant)
-                point = on_circle;
-        }
-        invariants->first[index] = point.first;
-        invariants->scale[index] = trial.norm > 0.0 ? point.norm / trial.norm : 1.0;
+        real first = invariants->first[index];
+        real norm = invariants->norm[index];
+        real excess = norm + law.slope * first - law.strength;
+        real wedge = law.wedge_norm * norm - law.wedge_first * first - law.wedge;
+        real multiplier = maximum(excess, 0) * law.inverse;
+        bool beyond = first - law.flow_bulk * multiplier > law.tangent_invariant;
+        bool at_circle = (first > law.tangent_invariant) & (wedge < 0);
+        bool yields = plastic_strain[index] > 0;
+        bool to_circle = yields & beyond & at_circle;
+        bool to_corner = yields & beyond & !at_circle;
+        real along = beyond ? 0 : multiplier;
+        real returned = to_corner ? law.tangent_invariant : first - law.flow_bulk * along;
+        real left = to_corner ? law.tangent_norm : norm - law.stiffness.shear * along;
+        real deviatoric = (norm - left) * law.shear_inverse;
+        real spherical = (first - returned) * law.bulk_inverse;
+        real total = flow_norm(deviatoric, spherical);
+        invariants->returned[index] = returned;
+        invariants->scale[index] = left / (norm > 0 ? norm : 1);
+        invariants->spherical[index] = spherical;
+        plastic_strain[index] = to_circle ? -1 : total;
+        dissipation[index] = flow_dissipation(left, returned, deviatoric, spherical);
     }
 }
 
-TALUS_INLINE void cap_update_stress(const struct cap *cap, const struct material_batch *batch,
+/* The slots that are left to the circle, side by side: full vectors however few and scattered they
+ * are. Stresses in units of the radius, S = |s_tr| / R_t and T = I1_tr / R_t. */
+struct cap_slots {
+    size_t count;                 /* a multiple of MATERIAL_SLOT_MULTIPLE */
+    size_t index[MATERIAL_CHUNK]; /* in the chunk; the last ones may be one and the same */
+    MATERIAL_ALIGNED real norm[MATERIAL_CHUNK];       /* S */
+    MATERIAL_ALIGNED real first[MATERIAL_CHUNK];      /* T */
+    MATERIAL_ALIGNED real multiplier[MATERIAL_CHUNK]; /* x [1/Pa] */
+    MATERIAL_ALIGNED real excess[MATERIAL_CHUNK];     /* n(x) - 1 before the last step */
+};
+
+static inline void cap_slots_collect(const struct cap_law *law, const real *plastic_strain,
+                                     size_t count, const struct invariants *invariants,
+                                     struct cap_slots *slots)
+{
+    const real inverse = 1 / law->radius;
+    size_t used = 0;
+    for (size_t index = 0; index < count; index++) {
+        slots->index[used] = index;
+        used += plastic_strain[index] < 0;
+    }
+    for (; used % MATERIAL_SLOT_MULTIPLE != 0; used++)
+        slots->index[used] = slots->index[used - 1];
+    for (size_t place = 0; place < used; place++) {
+        slots->norm[place] = invariants->norm[slots->index[place]] * inverse;
+        slots->first[place] = invariants->first[slots->index[place]] * inverse;
+    }
+    slots->count = used;
+}
+
+/* Associated return to the circle: s = s_tr/(1 + a x), I1 = I1_tr/(1 + b x), a = 4 G, b = 18 K,
+ * with n(x)^2 = S^2/(1 + a x)^2 + T^2/(1 + b x)^2 = 1. One step of Halley's method for
+ * 1 - 1/n(x). */
+struct cap_step {
+    real excess; /* n - 1 */
+    real change; /* of x */
+};
+
+TALUS_INLINE struct cap_step cap_halley(real shear, real bulk, real norm, real first, real x)
+{
+    real shear_divisor = 1 + shear * x;
+    real bulk_divisor = 1 + bulk * x;
+    real inverse = 1 / (shear_divisor * bulk_divisor);
+    real shear_part = norm * bulk_divisor * inverse;
+    real bulk_part = first * shear_divisor * inverse;
+    shear_part *= shear_part;
+    bulk_part *= bulk_part;
+    shear *= bulk_divisor * inverse;
+    bulk *= shear_divisor * inverse;
+    /* n^2 and its derivatives over -2 and over 6 */
+    real square = shear_part + bulk_part;
+    real slope = shear * shear_part + bulk * bulk_part;
+    real curvature = shear * shear * shear_part + bulk * bulk * bulk_part;
+    real excess = real_sqrt(square) - 1;
+    real divisor = 2 * slope * slope - 3 * excess * (square * curvature - slope * slope);
+    divisor = maximum(divisor, slope * slope); /* far off: at most twice Newton's step */
+    return (struct cap_step){excess, 2 * excess * square * slope / divisor};
+}
+
+/* Where the iteration starts: the larger one of two lower bounds or estimates, Newton's step from
+ * x = 0 and the asymptote for trials far away. */
+TALUS_INLINE real cap_start(real shear, real bulk, real norm, real first)
+{
+    real shear_part = norm * norm;
+    real bulk_part = first * first;
+    real square = shear_part + bulk_part;
+    real near = (real_sqrt(square) - 1) * square / (shear * shear_part + bulk * bulk_part);
+    shear = 1 / shear;
+    bulk = 1 / bulk;
+    shear_part *= shear * shear;
+    bulk_part *= bulk * bulk;
+    square = shear_part + bulk_part;
+    real far = real_sqrt(square) - (shear * shear_part + bulk * bulk_part) / square;
+    return maximum(near, far);
+}
+
+/* Three steps are enough for common stiffnesses; the slots that need more (K >> G) go on together,
+ * and each of them stops where it would stop alone. */
+static inline void cap_slots_iterate(const struct cap_law *law, struct cap_slots *slots)
+{
+    enum { STEPS = 3, FURTHER_STEPS_MAX = 60 };
+    const real tolerance = 64 * REAL_EPSILON;
+    const real shear = 2 * law->stiffness.shear;
+    const real bulk = 6 * law->stiffness.bulk;
+    const size_t count = whole_rows(slots->count);
+#pragma omp simd
+    for (size_t place = 0; place < count; place++) {
+        real norm = slots->norm[place];
+        real first = slots->first[place];
+        real x = cap_start(shear, bulk, norm, first);
+        for (int step = 0; step < STEPS; step++)
+            x += cap_halley(shear, bulk, norm, first, x).change;
+        slots->multiplier[place] = x;
+    }
+    for (int further = 0; further < FURTHER_STEPS_MAX; further++) {
+        MATERIAL_ALIGNED real changes[MATERIAL_CHUNK];
+#pragma omp simd
+        for (size_t place = 0; place < count; place++) {
+            struct cap_step step = cap_halley(shear, bulk, slots->norm[place], slots->first[place],
+                                              slots->multiplier[place]);
+            changes[place] = real_absolute(step.excess) > tolerance ? step.change : 0;
+            slots->multiplier[place] += changes[place];
+        }
+        if (!number_bits(count, changes).nonzero)
+            break;
+    }
+}
+
+static inline void cap_slots_return(const struct cap_law *constants, struct cap_slots *slots,
+                                    const struct material_batch *batch, size_t begin,
+                                    struct invariants *invariants)
+{
+    const struct cap_law law = *constants;
+    const real shear = 2 * law.stiffness.shear;
+    const real bulk = 6 * law.stiffness.bulk;
+    const size_t count = whole_rows(slots->count);
+    MATERIAL_ALIGNED real plastic_strain[MATERIAL_CHUNK];
+    MATERIAL_ALIGNED real dissipation[MATERIAL_CHUNK];
+    MATERIAL_ALIGNED real scale[MATERIAL_CHUNK];
+#pragma omp simd
+    for (size_t place = 0; place < count; place++) {
+        real shear_divisor = 1 + shear * slots->multiplier[place];
+        real bulk_divisor = 1 + bulk * slots->multiplier[place];
+        real norm = slots->norm[place] * bulk_divisor;
+        real first = slots->first[place] * shear_divisor;
+        /* scaled onto the circle, which removes the last round-off */
+        real onto = law.radius / real_sqrt(norm * norm + first * first);
+        real trial_norm = slots->norm[place] * law.radius;
+        real left = norm * onto;
+        real returned = first * onto;
+        real deviatoric = (trial_norm - left) * law.shear_inverse;
+        real spherical = (slots->first[place] * law.radius - returned) * law.bulk_inverse;
+        scale[place] = bulk_divisor * onto / law.radius;
+        slots->norm[place] = spherical;
+        slots->first[place] = returned;
+        plastic_strain[place] = flow_norm(deviatoric, spherical);
+        dissipation[place] = flow_dissipation(left, returned, deviatoric, spherical);
+    }
+    for (size_t place = 0; place < count; place++) {
+        const size_t index = slots->index[place];
+        invariants->scale[index] = scale[place];
+        invariants->spherical[index] = slots->norm[place];
+        invariants->returned[index] = slots->first[place];
+        batch->plastic_strain[begin + index] = plastic_strain[place];
+        batch->dissipation[begin + index] = dissipation[place];
+    }
+}
+
+static inline void cap_return_to_circle(const struct cap_law *law,
+                                        const struct material_batch *batch, size_t begin,
+                                        size_t count, struct invariants *invariants)
+{
+    struct cap_slots slots;
+    cap_slots_collect(law, batch->plastic_strain + begin, count, invariants, &slots);
+    cap_slots_iterate(law, &slots);
+    cap_slots_return(law, &slots, batch, begin, invariants);
+}
+
+TALUS_INLINE bool cap_update_stress(const struct cap *cap, const struct material_batch *batch,
                                     size_t components)
 {
+    const struct cap_law law = cap_law_of(cap);
+    const size_t slots = slot_count(batch);
     struct invariants invariants;
-    for (size_t begin = 0; begin < batch->count; begin += MATERIAL_CHUNK) {
-        size_t left = batch->count - begin;
-        size_t count = left < MATERIAL_CHUNK ? left : MATERIAL_CHUNK;
-        invariants_of_trial(&cap->elasticity, batch, components, begin, count, false, &invariants);
-        cap_return_to_cone(cap, count, &invariants);
-        cap_return_beyond_cone(cap, count, &invariants);
-        invariants_apply(&cap->elasticity, batch, components, begin, count, &invariants);
+    bool flowed = false;
+    for (size_t begin = 0; begin < slots; begin += MATERIAL_CHUNK) {
+        const size_t count = chunk_count(slots, begin);
+        invariants_of_trial(law.stiffness, batch, components, begin, count, false, &invariants);
+        cap_mark_yielding(&law, batch, begin, count, &invariants);
+        if (!any_flowed(batch, begin, count)) {
+            elasticity_apply(law.stiffness, batch, components, begin, count);
+            continue;
+        }
+        flowed = true;
+        cap_return_to_cone(&law, batch, begin, count, &invariants);
+        if (number_bits(count, batch->plastic_strain + begin).negative)
+            cap_return_to_circle(&law, batch, begin, count, &invariants);
+        invariants_apply(law.stiffness, batch, components, begin, count, &invariants);
     }
+    return flowed;
 }
 
 #endif

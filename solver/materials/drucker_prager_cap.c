@@ -196,13 +196,13 @@ static double wave_speed(const void *constants)
     return elasticity_wave_speed(&cap->elasticity);
 }
 
-static void update_stress(const void *constants, const struct material_batch *batch)
+static bool update_stress(const void *constants, const struct material_batch *batch)
 {
     const struct cap *cap = constants;
-    MATERIAL_INSTANTIATE(cap_update_stress, cap, batch);
+    return MATERIAL_INSTANTIATE(cap_update_stress, cap, batch);
 }
 
-static void strain_energy(const void *constants, const struct material_batch *batch, double *energy)
+static void strain_energy(const void *constants, const struct material_batch *batch, real *energy)
 {
     const struct cap *cap = constants;
     elasticity_strain_energy(&cap->elasticity, batch, energy);
@@ -227,6 +227,7 @@ const struct material drucker_prager_cap = {
     .summary = "Drucker-Prager cone, perfectly plastic, closed by a circular cap in tension",
     .parameters = parameters,
     .plastic = true,
+    .dissipates = true,
     .constants_size = sizeof(struct cap),
     .check = check,
     .prepare = prepare,

@@ -6,33 +6,24 @@ static const struct parameter parameters[] = {
     {.key = NULL},
 };
 
-TALUS_INLINE void update_stress_kernel(const struct mobilised *mobilised,
-                                       const struct material_batch *batch, size_t components)
+/* The outer cone, whatever the direction. */
+static void surface_slopes(size_t count, const real *tangent, const struct invariants *invariants,
+                           real *slope)
 {
-    struct invariants invariants;
-    struct mobilised_angles angles;
-    for (size_t begin = 0; begin < batch->count; begin += MATERIAL_CHUNK) {
-        size_t left = batch->count - begin;
-        size_t count = left < MATERIAL_CHUNK ? left : MATERIAL_CHUNK;
-        double slope[MATERIAL_CHUNK];
-        double flow_slope[MATERIAL_CHUNK];
-        mobilised_angles_at_start(mobilised, batch, begin, count, &angles);
-        for (size_t index = 0; index < count; index++) {
-            slope[index] = mobilised_cone_slope(angles.tangent[index]);
-            flow_slope[index] = mobilised_cone_slope(angles.flow_tangent[index]);
-        }
-        invariants_of_trial(&mobilised->elasticity, batch, components, begin, count, false,
-                            &invariants);
-        mobilised_return(mobilised, count, slope, flow_slope, &invariants);
-        invariants_apply(&mobilised->elasticity, batch, components, begin, count, &invariants);
-        mobilised_advance(mobilised, batch, begin, count, &invariants);
-    }
+    (void)invariants;
+    mobilised_cone_slopes(count, tangent, slope);
 }
 
-static void update_stress(const void *constants, const struct material_batch *batch)
+TALUS_INLINE bool update_stress_kernel(const struct mobilised *mobilised,
+                                       const struct material_batch *batch, size_t components)
+{
+    return mobilised_update(mobilised, batch, components, surface_slopes, false);
+}
+
+static bool update_stress(const void *constants, const struct material_batch *batch)
 {
     const struct mobilised *mobilised = constants;
-    MATERIAL_INSTANTIATE(update_stress_kernel, mobilised, batch);
+    return MATERIAL_INSTANTIATE(update_stress_kernel, mobilised, batch);
 }
 
 const struct material drucker_prager_mobilised = {
@@ -41,6 +32,7 @@ const struct material drucker_prager_mobilised = {
     .summary = "Drucker-Prager cone whose friction and dilation follow from the plastic strain",
     .parameters = parameters,
     .plastic = true,
+    .dissipates = true,
     .state_count = MOBILISED_STATE_COUNT,
     .state_names = mobilised_state_names,
     .constants_size = sizeof(struct mobilised),

@@ -52,17 +52,19 @@ void elasticity_strain_from_stress(const struct elasticity *elasticity,
 
 TALUS_INLINE void strain_energy_kernel(const struct elasticity *elasticity,
                                        const struct material_batch *batch, size_t components,
-                                       double *energy)
+                                       real *energy)
 {
+    const struct stiffness stiffness = elasticity_stiffness(elasticity);
+    const size_t count = slot_count(batch);
 #pragma omp simd
-    for (size_t slot = 0; slot < batch->count; slot++) {
+    for (size_t slot = 0; slot < count; slot++) {
         struct sym3 strain = components_load(batch->strain, slot, components);
-        energy[slot] = 0.5 * sym3_dot(elasticity_stress(elasticity, strain), strain);
+        energy[slot] = (real)0.5 * sym3_dot(elasticity_stress(stiffness, strain), strain);
     }
 }
 
 void elasticity_strain_energy(const struct elasticity *elasticity,
-                              const struct material_batch *batch, double *energy)
+                              const struct material_batch *batch, real *energy)
 {
     if (batch->component_count == 3)
         strain_energy_kernel(elasticity, batch, 3, energy);

@@ -35,14 +35,33 @@ void elasticity_strain_from_stress(const struct elasticity *elasticity,
                                    double strain[SYM3_COMPONENTS]);
 /* K tr(e)^2 / 2 + G |dev e|^2 into energy[batch->count]. */
 void elasticity_strain_energy(const struct elasticity *elasticity,
-                              const struct material_batch *batch, double *energy);
+                              const struct material_batch *batch, real *energy);
 
-TALUS_INLINE struct sym3 elasticity_stress(const struct elasticity *elasticity, struct sym3 strain)
+struct stiffness { /* what loops over slots compute with [Pa] */
+    real shear;    /* 2 G: stress over strain of the deviators */
+    real bulk;     /* 3 K: I1 over trace of the strain */
+};
+
+TALUS_INLINE struct stiffness elasticity_stiffness(const struct elasticity *elasticity)
 {
-    double volumetric = sym3_trace(strain);
-    struct sym3 deviator = sym3_add_diagonal(strain, -volumetric / 3.0);
-    return sym3_add_diagonal(sym3_scale(2.0 * elasticity->shear, deviator),
-                             elasticity->bulk * volumetric);
+    return (struct stiffness){(real)(2.0 * elasticity->shear), (real)(3.0 * elasticity->bulk)};
+}
+
+TALUS_INLINE struct sym3 elasticity_stress(struct stiffness stiffness, struct sym3 strain)
+{
+    real volumetric = (stiffness.bulk - stiffness.shear) * (real)(1.0 / 3.0) * sym3_trace(strain);
+    return sym3_add_diagonal(sym3_scale(stiffness.shear, strain), volumetric);
+}
+
+/* Stress of slots begin ... begin + count - 1 that do not flow. */
+TALUS_INLINE void elasticity_apply(struct stiffness stiffness, const struct material_batch *batch,
+                                   size_t components, size_t begin, size_t count)
+{
+#pragma omp simd
+    for (size_t slot = begin; slot < begin + count; slot++) {
+        struct sym3 strain = components_load(batch->strain, slot, components);
+        components_store(batch->stress, slot, components, elasticity_stress(stiffness, strain));
+    }
 }
 
 #endif

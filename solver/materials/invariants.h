@@ -1,75 +1,74 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Returns that act on the invariants of the trial stress only: they scale its deviator and shift
  * its trace, so no eigenvectors are needed. A chunk of slots passes through three loops: trial
- * invariants, the model's own return, and the application to strain and stress. */
+ * invariants, the model's own return, and the application to strain and stress. Short loops in a
+ * row are faster than one long loop, which waits for its own square roots and divisions. */
 #ifndef TALUS_INVARIANTS_H
 #define TALUS_INVARIANTS_H
 
 #include "materials/elasticity.h"
 
-struct invariants {               /* arrays over the slots of a chunk */
-    double first[MATERIAL_CHUNK]; /* I1 = tr(sigma) [Pa]: in trial, out returned */
-    double norm[MATERIAL_CHUNK];  /* |s| of the trial stress [Pa] */
-    double third[MATERIAL_CHUNK]; /* det(s)/|s|^3 of the trial stress [-]; 0 where |s| = 0 */
-    double scale[MATERIAL_CHUNK]; /* out: |s| returned / |s| trial; 1 where elastic */
-    double trial[MATERIAL_CHUNK]; /* I1 of the trial stress [Pa] */
+struct invariants { /* arrays over the slots of a chunk; slots that stay elastic come out with their
+                       trial I1, scale 1 (0 without a deviator) and spherical 0 */
+    MATERIAL_ALIGNED real first[MATERIAL_CHUNK]; /* in: I1 = tr(sigma) of the trial stress [Pa] */
+    MATERIAL_ALIGNED real norm[MATERIAL_CHUNK];  /* in: |s| of the trial stress [Pa] */
+    MATERIAL_ALIGNED real
+        determinant[MATERIAL_CHUNK]; /* in, on request: det(s) of the trial stress [Pa^3] */
+    MATERIAL_ALIGNED real returned[MATERIAL_CHUNK]; /* out: I1 returned [Pa] */
+    MATERIAL_ALIGNED real scale[MATERIAL_CHUNK];    /* out: |s| returned / |s| trial */
+    MATERIAL_ALIGNED real
+        spherical[MATERIAL_CHUNK]; /* out: a third of the trace of the plastic strain increment */
 };
 
-/* Fills everything but `scale` for slots begin ... begin + count - 1; `third` on request. */
-TALUS_INLINE void invariants_of_trial(const struct elasticity *elasticity,
+/* Everything that is `in`, for slots begin ... begin + count - 1. */
+TALUS_INLINE void invariants_of_trial(struct stiffness stiffness,
                                       const struct material_batch *batch, size_t components,
-                                      size_t begin, size_t count, bool with_third,
+                                      size_t begin, size_t count, bool with_determinant,
                                       struct invariants *invariants)
 {
-    double bulk = elasticity->bulk;
-    double shear = elasticity->shear;
 #pragma omp simd
     for (size_t index = 0; index < count; index++) {
         struct sym3 strain = components_load(batch->strain, begin + index, components);
-        double volumetric = sym3_trace(strain);
-        struct sym3 deviator = sym3_add_diagonal(strain, -volumetric / 3.0);
-        double norm = sym3_norm(deviator);
-        invariants->first[index] = 3.0 * bulk * volumetric;
-        invariants->trial[index] = 3.0 * bulk * volumetric;
-        invariants->norm[index] = 2.0 * shear * norm;
-        if (with_third) {
-            /* |det s| <= |s|^3 / sqrt(54); the bound holds round-off of tiny strains off */
-            double inverse = norm > 0.0 ? 1.0 / norm : 0.0;
-            double third = sym3_determinant(sym3_scale(inverse, deviator));
-            const double bound = 0.13608276348795434;
-            third = minimum(maximum(third, -bound), bound);
-            invariants->third[index] = third;
-        }
+        struct sym3 deviator = sym3_scale(stiffness.shear, sym3_deviator(strain));
+        invariants->first[index] = stiffness.bulk * sym3_trace(strain);
+        invariants->norm[index] = sym3_norm(deviator);
+        if (with_determinant)
+            invariants->determinant[index] = sym3_determinant(deviator);
     }
 }
 
-/* Elastic strain, stress, plastic strain and dissipation from the returned invariants. Slots that
- * stayed elastic (scale 1, first = trial) keep their strain to the last bit. */
-TALUS_INLINE void invariants_apply(const struct elasticity *elasticity,
-                                   const struct material_batch *batch, size_t components,
-                                   size_t begin, size_t count, const struct invariants *invariants)
+/* Elastic strain and stress from everything that is `out`. Slots that stayed elastic keep their
+ * strain to the last bit. */
+TALUS_INLINE void invariants_apply(struct stiffness stiffness, const struct material_batch *batch,
+                                   size_t components, size_t begin, size_t count,
+                                   const struct invariants *invariants)
 {
-    double bulk = elasticity->bulk;
-    double shear = elasticity->shear;
 #pragma omp simd
     for (size_t index = 0; index < count; index++) {
         size_t slot = begin + index;
-        double first = invariants->first[index];
-        double scale = invariants->scale[index];
-        double norm = invariants->norm[index];
+        real scale = invariants->scale[index];
+        real mean = invariants->returned[index] * (real)(1.0 / 3.0);
         struct sym3 strain = components_load(batch->strain, slot, components);
         struct sym3 deviator = sym3_deviator(strain);
-        struct sym3 stress =
-            sym3_add_diagonal(sym3_scale(2.0 * shear * scale, deviator), first / 3.0);
-        double spherical = (invariants->trial[index] - first) / (9.0 * bulk); /* of the increment */
-        double deviatoric = (1.0 - scale) * norm / (2.0 * shear);
-        strain = sym3_add_diagonal(sym3_add_scaled(strain, scale - 1.0, deviator), -spherical);
-        components_store(batch->strain, slot, components, strain);
-        components_store(batch->stress, slot, components, stress);
-        batch->plastic_strain[slot] = sqrt(deviatoric * deviatoric + 3.0 * spherical * spherical);
-        /* sigma : plastic strain increment; never negative but for round-off */
-        batch->dissipation[slot] = maximum(scale * norm * deviatoric + first * spherical, 0.0);
+        strain = sym3_add_scaled(strain, scale - 1, deviator);
+        components_store(batch->strain, slot, components,
+                         sym3_add_diagonal(strain, -invariants->spherical[index]));
+        components_store(batch->stress, slot, components,
+                         sym3_add_diagonal(sym3_scale(stiffness.shear * scale, deviator), mean));
     }
+}
+
+/* Norm of a plastic strain increment: |dev|, and a third of its trace. */
+TALUS_INLINE real flow_norm(real deviatoric, real spherical)
+{
+    return real_sqrt(deviatoric * deviatoric + 3 * spherical * spherical);
+}
+
+/* Energy that a flow takes from a stress with |s| = norm and I1 = first; negative by round-off
+ * only. */
+TALUS_INLINE real flow_dissipation(real norm, real first, real deviatoric, real spherical)
+{
+    return maximum(norm * deviatoric + first * spherical, 0);
 }
 
 #endif

@@ -89,104 +89,183 @@ static double wave_speed(const void *constants)
 }
 
 /* The rotation of a step: Cayley transform of the spin, orthogonal for any step (Hughes and Winget
- * 1980). */
-TALUS_INLINE struct mat3 spin_rotation(double xy, double yz, double xz)
+ * 1980): 1 + s (W + W^2 / 2) with s = 1/(1 + |w|^2 / 4) and W^2 = w (x) w - |w|^2 1. */
+TALUS_INLINE struct mat3 spin_rotation(real xy, real yz, real xz)
 {
-    double scale = 1.0 / (1.0 + 0.25 * (xy * xy + yz * yz + xz * xz));
-    struct mat3 spin = {{{0.0, xy, xz}, {-xy, 0.0, yz}, {-xz, -yz, 0.0}}};
-    struct mat3 square = mat3_multiply(spin, spin);
-    struct mat3 rotation;
-    for (int i = 0; i < 3; i++) {
-        for (int j = 0; j < 3; j++)
-            rotation.m[i][j] = (i == j ? 1.0 : 0.0) + scale * (spin.m[i][j] + 0.5 * square.m[i][j]);
-    }
-    return rotation;
+    const real half = (real)0.5;
+    real square = xy * xy + yz * yz + xz * xz;
+    real scale = 1 / (1 + (real)0.25 * square);
+    real diagonal = 1 - half * scale * square;
+    real x = scale * yz; /* W v = v x w of the vector w = (yz, -xz, xy) */
+    real y = -scale * xz;
+    real z = scale * xy;
+    return (struct mat3){{
+        {diagonal + half * x * yz, z - half * x * xz, half * x * xy - y},
+        {-half * x * xz - z, diagonal - half * y * xz, x + half * y * xy},
+        {half * x * xy + y, half * y * xy - x, diagonal + half * z * xy},
+    }};
 }
 
+/* The back strain is zero before the first flow, which leaves its mark in the isotropic variable.
+ */
 TALUS_INLINE void turn_back_strain(const struct material_batch *batch, size_t components)
 {
-    double *const *back = batch->history + STATE_BACK_STRAIN;
-    double time_step = batch->time_step;
+    real *const *back = batch->history + STATE_BACK_STRAIN;
+    const real time_step = (real)batch->time_step;
+    const size_t count = slot_count(batch);
+    if (!number_bits(count, batch->history[STATE_ISOTROPIC]).nonzero)
+        return;
 #pragma omp simd
-    for (size_t slot = 0; slot < batch->count; slot++) {
-        double xy = time_step * batch->spin[0][slot];
-        double yz = components > 4 ? time_step * batch->spin[1][slot] : 0.0;
-        double xz = components > 4 ? time_step * batch->spin[2][slot] : 0.0;
+    for (size_t slot = 0; slot < count; slot++) {
+        real xy = time_step * batch->spin[0][slot];
+        real yz = components > 4 ? time_step * batch->spin[1][slot] : 0;
+        real xz = components > 4 ? time_step * batch->spin[2][slot] : 0;
         struct sym3 turned =
             sym3_push_forward(spin_rotation(xy, yz, xz), components_load(back, slot, components));
         components_store(back, slot, components, turned);
     }
 }
 
-/* 2/3 H back strain; `kinematic` is known to the compiler and spares the arrays where H is 0. */
-TALUS_INLINE void radial_return(const struct j2 *constants, const struct material_batch *batch,
+struct j2_law { /* what the loops compute with */
+    struct stiffness stiffness;
+    real hardening;                /* 2/3 H */
+    real initial_strength, growth; /* sqrt(2/3) sigma_Y and sqrt(2/3) k */
+    real shear;                    /* 2 G + 2/3 H */
+    real inverse;                  /* multiplier over what is beyond the surface [1/Pa] */
+};
+
+static struct j2_law j2_law_of(const struct j2 *j2)
+{
+    const double root = sqrt(2.0 / 3.0);
+    const double hardening = 2.0 / 3.0 * j2->kinematic_hardening;
+    const double shear = 2.0 * j2->elasticity.shear + hardening;
+    return (struct j2_law){
+        .stiffness = elasticity_stiffness(&j2->elasticity),
+        .hardening = (real)hardening,
+        .initial_strength = (real)(root * j2->yield_stress),
+        .growth = (real)(root * j2->isotropic_hardening),
+        .shear = (real)shear,
+        .inverse = (real)(1.0 / (shear + 2.0 / 3.0 * j2->isotropic_hardening)),
+    };
+}
+
+/* eta; `kinematic` is known to the compiler and spares the back strain where H is 0. */
+TALUS_INLINE struct sym3 relative_stress(const struct j2_law *law, struct sym3 strain,
+                                         struct sym3 back_strain, bool kinematic)
+{
+    struct sym3 stress = sym3_scale(law->stiffness.shear, sym3_deviator(strain));
+    return kinematic ? sym3_add_scaled(stress, -law->hardening, back_strain) : stress;
+}
+
+TALUS_INLINE struct sym3 back_strain_load(const struct material_batch *batch, size_t slot,
+                                          size_t components, bool kinematic)
+{
+    return kinematic ? components_load(batch->history + STATE_BACK_STRAIN, slot, components)
+                     : (struct sym3){0};
+}
+
+/* Plastic strain, dissipation and isotropic variable out of along[] = |eta|, which becomes the
+ * plastic strain over |eta|. */
+static void flow(const struct j2_law *constants, const struct material_batch *batch, size_t begin,
+                 size_t count, real *along)
+{
+    const struct j2_law law = *constants;
+    const real root = (real)0.816496580927726; /* sqrt(2/3) */
+    real *isotropic = batch->history[STATE_ISOTROPIC] + begin;
+    real *plastic_strain = batch->plastic_strain + begin;
+    real *dissipation = batch->dissipation + begin;
+    count = whole_rows(count);
+#pragma omp simd
+    for (size_t index = 0; index < count; index++) {
+        real norm = along[index];
+        real strength = law.initial_strength + law.growth * isotropic[index];
+        real multiplier = maximum(norm - strength, 0) * law.inverse;
+        along[index] = multiplier / (norm > 0 ? norm : 1);
+        isotropic[index] += root * multiplier;
+        plastic_strain[index] = multiplier;
+        /* what is not stored in the back strain (see strain_energy) is lost: |eta| dgam */
+        dissipation[index] = (norm - law.shear * multiplier) * multiplier;
+    }
+}
+
+TALUS_INLINE void apply(const struct j2_law *constants, const struct material_batch *batch,
+                        size_t components, bool kinematic, size_t begin, size_t count,
+                        const real *along)
+{
+    const struct j2_law law = *constants;
+#pragma omp simd
+    for (size_t index = 0; index < count; index++) {
+        size_t slot = begin + index;
+        struct sym3 strain = components_load(batch->strain, slot, components);
+        struct sym3 back_strain = back_strain_load(batch, slot, components, kinematic);
+        struct sym3 relative = relative_stress(&law, strain, back_strain, kinematic);
+        strain = sym3_add_scaled(strain, -along[index], relative);
+        components_store(batch->strain, slot, components, strain);
+        components_store(batch->stress, slot, components, elasticity_stress(law.stiffness, strain));
+        if (kinematic)
+            components_store(batch->history + STATE_BACK_STRAIN, slot, components,
+                             sym3_add_scaled(back_strain, along[index], relative));
+    }
+}
+
+TALUS_INLINE bool radial_return(const struct j2 *j2, const struct material_batch *batch,
                                 size_t components, bool kinematic)
 {
-    const struct j2 j2 = *constants;
-    double *const *back = batch->history + STATE_BACK_STRAIN;
-    double *isotropic = batch->history[STATE_ISOTROPIC];
-    double root = sqrt(2.0 / 3.0);
-    double shear = 2.0 * j2.elasticity.shear;
-    double hardening = kinematic ? 2.0 / 3.0 * j2.kinematic_hardening : 0.0;
-    double inverse = 1.0 / (shear + hardening + 2.0 / 3.0 * j2.isotropic_hardening);
+    const struct j2_law law = j2_law_of(j2);
+    const size_t slots = slot_count(batch);
+    MATERIAL_ALIGNED real along[MATERIAL_CHUNK];
+    bool flowed = false;
+    for (size_t begin = 0; begin < slots; begin += MATERIAL_CHUNK) {
+        const size_t count = chunk_count(slots, begin);
 #pragma omp simd
-    for (size_t slot = 0; slot < batch->count; slot++) {
-        struct sym3 strain = components_load(batch->strain, slot, components);
-        struct sym3 relative = sym3_scale(shear, sym3_deviator(strain));
-        struct sym3 back_strain = {0};
-        if (kinematic) {
-            back_strain = components_load(back, slot, components);
-            relative = sym3_add_scaled(relative, -hardening, back_strain);
+        for (size_t index = 0; index < count; index++) {
+            size_t slot = begin + index;
+            struct sym3 strain = components_load(batch->strain, slot, components);
+            struct sym3 back_strain = back_strain_load(batch, slot, components, kinematic);
+            along[index] = sym3_norm(relative_stress(&law, strain, back_strain, kinematic));
         }
-        double norm = sym3_norm(relative);
-        double strength = root * (j2.yield_stress + j2.isotropic_hardening * isotropic[slot]);
-        double multiplier = maximum(norm - strength, 0.0) * inverse;
-        double along = multiplier / (norm > 0.0 ? norm : 1.0);
-        strain = sym3_add_scaled(strain, -along, relative);
-        components_store(batch->strain, slot, components, strain);
-        components_store(batch->stress, slot, components,
-                         elasticity_stress(&j2.elasticity, strain));
-        if (kinematic)
-            components_store(back, slot, components, sym3_add_scaled(back_strain, along, relative));
-        isotropic[slot] += root * multiplier;
-        batch->plastic_strain[slot] = multiplier;
-        /* what is not stored in the back strain (see strain_energy) is lost: |eta| dgam */
-        batch->dissipation[slot] = (norm - (shear + hardening) * multiplier) * multiplier;
+        flow(&law, batch, begin, count, along);
+        if (any_flowed(batch, begin, count)) {
+            apply(&law, batch, components, kinematic, begin, count, along);
+            flowed = true;
+        } else {
+            elasticity_apply(law.stiffness, batch, components, begin, count);
+        }
     }
+    return flowed;
 }
 
-TALUS_INLINE void update_stress_kernel(const struct j2 *j2, const struct material_batch *batch,
+TALUS_INLINE bool update_stress_kernel(const struct j2 *j2, const struct material_batch *batch,
                                        size_t components)
 {
-    if (j2->kinematic_hardening == 0.0) {
-        radial_return(j2, batch, components, false);
-        return;
-    }
+    if (j2->kinematic_hardening == 0.0)
+        return radial_return(j2, batch, components, false);
     if (batch->spin[0] != NULL)
         turn_back_strain(batch, components);
-    radial_return(j2, batch, components, true);
+    return radial_return(j2, batch, components, true);
 }
 
-static void update_stress(const void *constants, const struct material_batch *batch)
+static bool update_stress(const void *constants, const struct material_batch *batch)
 {
     const struct j2 *j2 = constants;
-    MATERIAL_INSTANTIATE(update_stress_kernel, j2, batch);
+    return MATERIAL_INSTANTIATE(update_stress_kernel, j2, batch);
 }
 
 TALUS_INLINE void add_back_strain_energy(const struct j2 *j2, const struct material_batch *batch,
-                                         size_t components, double *energy)
+                                         size_t components, real *energy)
 {
-    double *const *back = batch->history + STATE_BACK_STRAIN;
-    double factor = j2->kinematic_hardening / 3.0;
+    real *const *back = batch->history + STATE_BACK_STRAIN;
+    const real factor = (real)(j2->kinematic_hardening / 3.0);
+    const size_t count = slot_count(batch);
 #pragma omp simd
-    for (size_t slot = 0; slot < batch->count; slot++) {
+    for (size_t slot = 0; slot < count; slot++) {
         struct sym3 back_strain = components_load(back, slot, components);
         energy[slot] += factor * sym3_dot(back_strain, back_strain);
     }
 }
 
 /* Elastic energy and that of the back strain, H/3 |a_kin|^2, which a reversed load recovers. */
-static void strain_energy(const void *constants, const struct material_batch *batch, double *energy)
+static void strain_energy(const void *constants, const struct material_batch *batch, real *energy)
 {
     const struct j2 *j2 = constants;
     elasticity_strain_energy(&j2->elasticity, batch, energy);
@@ -214,6 +293,7 @@ const struct material j2 = {
     .parameters = parameters,
     .needs_spin = true,
     .plastic = true,
+    .dissipates = true,
     .state_count = STATE_COUNT,
     .state_names = state_names,
     .constants_size = sizeof(struct j2),

@@ -24,23 +24,17 @@ static double wave_speed(const void *constants)
 TALUS_INLINE void update_stress_kernel(const struct elasticity *elasticity,
                                        const struct material_batch *batch, size_t components)
 {
-    struct elasticity constants = *elasticity;
-#pragma omp simd
-    for (size_t slot = 0; slot < batch->count; slot++) {
-        struct sym3 strain = components_load(batch->strain, slot, components);
-        components_store(batch->stress, slot, components, elasticity_stress(&constants, strain));
-        batch->plastic_strain[slot] = 0.0;
-        batch->dissipation[slot] = 0.0;
-    }
+    elasticity_apply(elasticity_stiffness(elasticity), batch, components, 0, slot_count(batch));
 }
 
-static void update_stress(const void *constants, const struct material_batch *batch)
+static bool update_stress(const void *constants, const struct material_batch *batch)
 {
     const struct elasticity *elasticity = constants;
     MATERIAL_INSTANTIATE(update_stress_kernel, elasticity, batch);
+    return false;
 }
 
-static void strain_energy(const void *constants, const struct material_batch *batch, double *energy)
+static void strain_energy(const void *constants, const struct material_batch *batch, real *energy)
 {
     elasticity_strain_energy(constants, batch, energy);
 }

@@ -12,33 +12,38 @@
 #define TALUS_MATERIAL_H
 
 #include "base/parameter.h"
+#include "math/real.h"
 #include "talus/status.h"
 
 #include <stdbool.h>
 #include <stddef.h>
 
-enum { SYM3_COMPONENTS = 6 };
+enum { SYM3_COMPONENTS = 6, MATERIAL_SLOT_MULTIPLE = 4 };
 
 /* Scratch arrays of one block of particles; slot i of every array belongs to the same particle.
  * Empty slots hold zero strain, volume_ratio 1 and zero history, and must come out finite.
- * Arrays of components beyond component_count are absent (NULL) and mean zero. */
+ * Arrays of components beyond component_count are absent (NULL) and mean zero. No two arrays
+ * overlap. */
 struct material_batch {
-    size_t count;           /* slots; a multiple of the lane count, arrays aligned to 64 bytes */
+    size_t count;           /* slots; a multiple of MATERIAL_SLOT_MULTIPLE, arrays aligned to 64
+                               bytes */
     size_t component_count; /* 3 (line: xx yy zz), 4 (plane strain: + xy) or 6 (solid) */
     double time_step;       /* [s] */
-    double *strain[SYM3_COMPONENTS];     /* in: trial elastic strain; out: elastic strain [1].
-                                            Volumetric models (see `volumetric`) use strain[0] as
-                                            the volumetric strain ln J (trace at small strain) */
-    const double *rate[SYM3_COMPONENTS]; /* in: symmetric velocity gradient d [1/s] if needs_rate */
-    const double *spin[3];               /* in: (L - L^T)/2, components xy, yz, xz [1/s], if
-                                            needs_spin at finite strain; else NULL */
-    const double *volume_ratio;          /* in: J = V/V0 [1] (1 at small strain) */
-    double *stress[SYM3_COMPONENTS];     /* out: Kirchhoff stress (finite) or Cauchy (small) [Pa] */
-    double *const *history;              /* in/out: [state_count] arrays of the model's own state */
-    double *plastic_strain;              /* out: norm of the plastic strain increment of this step
-                                            (0 where elastic) [1] */
-    double *dissipation;                 /* out: dissipated energy of this step per initial volume,
-                                            >= 0, plastic and viscous [J/m^3] */
+    real *strain[SYM3_COMPONENTS];     /* in: trial elastic strain; out: elastic strain [1]. Slots
+                                          that do not flow keep it to the last bit. Volumetric
+                                          models (see `volumetric`) use strain[0] as the volumetric
+                                          strain ln J (trace at small strain) */
+    const real *rate[SYM3_COMPONENTS]; /* in: symmetric velocity gradient d [1/s] if needs_rate */
+    const real *spin[3];               /* in: (L - L^T)/2, components xy, yz, xz [1/s], if
+                                          needs_spin at finite strain; else NULL */
+    const real *volume_ratio;          /* in: J = V/V0 [1] (1 at small strain) */
+    real *stress[SYM3_COMPONENTS];     /* out: Kirchhoff stress (finite) or Cauchy (small) [Pa] */
+    real *const *history;              /* in/out: [state_count] arrays of the model's own state */
+    real *plastic_strain;              /* out, of `plastic` models only: norm of the plastic strain
+                                          increment of this step (0 where elastic) [1] */
+    real *dissipation;                 /* out, of models that dissipate only: dissipated energy of
+                                          this step per initial volume, >= 0, plastic and viscous
+                                          [J/m^3] */
 };
 
 struct material_issue { /* what `check` found; the caller owns it */
@@ -59,7 +64,8 @@ struct material {
     bool volumetric;     /* stores ln J only, in strain[0]; no deviatoric strain */
     bool needs_rate;     /* wants batch->rate */
     bool needs_spin;     /* wants batch->spin at finite strain: its history holds a tensor */
-    bool plastic;        /* may change the trial strain */
+    bool plastic;        /* may change the trial strain; writes batch->plastic_strain */
+    bool dissipates;     /* writes batch->dissipation: plastic or viscous */
     size_t state_count;  /* history variables per particle; only these are stored */
     const char *const *state_names; /* [state_count] */
     size_t constants_size;          /* bytes of the model's constants */
@@ -76,12 +82,14 @@ struct material {
     /* Initial history of a particle with elastic strain e[6] (NULL: zeros). */
     void (*initialise)(const void *constants, const double strain[SYM3_COMPONENTS],
                        double *history);
-    /* Trial strain -> stress, elastic strain, history, dissipation, for the whole batch. */
-    void (*update_stress)(const void *constants, const struct material_batch *batch);
+    /* Trial strain -> stress, elastic strain, history, dissipation, for the whole batch. Returns
+     * whether a slot flowed. If not, every slot keeps its trial strain and plastic strain and
+     * plastic dissipation are zero throughout: nothing has to be carried back to the stored form of
+     * the strain. Models that are not plastic return false. */
+    bool (*update_stress)(const void *constants, const struct material_batch *batch);
     /* Strain energy per initial volume [J/m^3] into energy[count], out of strain as stored
      * (elastic) and history; reads nothing else of the batch. */
-    void (*strain_energy)(const void *constants, const struct material_batch *batch,
-                          double *energy);
+    void (*strain_energy)(const void *constants, const struct material_batch *batch, real *energy);
     /* Elastic strain that gives a stress (initial states): K, G law; fluids: strain[0] = ln J. */
     void (*strain_from_stress)(const void *constants, const double stress[SYM3_COMPONENTS],
                                double strain[SYM3_COMPONENTS]);

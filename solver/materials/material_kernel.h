@@ -8,22 +8,67 @@
 #include "materials/material.h"
 #include "math/tensor.h"
 
+#include <stdint.h>
+#include <string.h>
+
 /* Slots that a model works on between two of its stages: small enough to stay in the first-level
  * cache. */
 enum { MATERIAL_CHUNK = 64 };
+/* For the arrays in between: without it the vectoriser adds a loop that seeks alignment. */
+#define MATERIAL_ALIGNED _Alignas(64)
 
 /* Calls an always-inline kernel(constants, batch, components) with components as a constant. */
 #define MATERIAL_INSTANTIATE(kernel, constants, batch)                                             \
-    do {                                                                                           \
-        if ((batch)->component_count == 3)                                                         \
-            kernel(constants, batch, 3);                                                           \
-        else if ((batch)->component_count == 4)                                                    \
-            kernel(constants, batch, 4);                                                           \
-        else                                                                                       \
-            kernel(constants, batch, 6);                                                           \
-    } while (0)
+    ((batch)->component_count == 3   ? kernel(constants, batch, 3)                                 \
+     : (batch)->component_count == 4 ? kernel(constants, batch, 4)                                 \
+                                     : kernel(constants, batch, 6))
 
-TALUS_INLINE struct sym3 components_load(double *const array[SYM3_COMPONENTS], size_t slot,
+/* A number of slots, in a form that tells the compiler that vectors leave no rest. */
+TALUS_INLINE size_t whole_rows(size_t count)
+{
+    return count & ~(size_t)(MATERIAL_SLOT_MULTIPLE - 1);
+}
+
+TALUS_INLINE size_t slot_count(const struct material_batch *batch)
+{
+    return whole_rows(batch->count);
+}
+
+/* Slots of the chunk that starts at `begin`. */
+TALUS_INLINE size_t chunk_count(size_t slots, size_t begin)
+{
+    size_t left = slots - begin;
+    return whole_rows(left < MATERIAL_CHUNK ? left : MATERIAL_CHUNK);
+}
+
+/* The sign and the other bits of `count` numbers, or-ed: what a loop left behind can be asked of
+ * all slots at once, and vectorises where a reduction over comparisons does not. */
+struct number_bits {
+    bool negative, nonzero;
+};
+
+TALUS_INLINE struct number_bits number_bits(size_t count, const real *values)
+{
+    const size_t word_count = count * sizeof *values / sizeof(uint64_t);
+    const uint64_t sign = sizeof *values == sizeof(uint64_t) ? UINT64_C(0x8000000000000000)
+                                                             : UINT64_C(0x8000000080000000);
+    uint64_t bits = 0;
+    for (size_t index = 0; index < word_count; index++) {
+        uint64_t word;
+        memcpy(&word, (const char *)values + index * sizeof word, sizeof word);
+        bits |= word;
+    }
+    return (struct number_bits){.negative = (bits & sign) != 0, .nonzero = (bits & ~sign) != 0};
+}
+
+/* Whether a slot of begin ... begin + count - 1 flowed: out of its plastic strain, which is written
+ * by then. */
+TALUS_INLINE bool any_flowed(const struct material_batch *batch, size_t begin, size_t count)
+{
+    return number_bits(count, batch->plastic_strain + begin).nonzero;
+}
+
+TALUS_INLINE struct sym3 components_load(real *const array[SYM3_COMPONENTS], size_t slot,
                                          size_t components)
 {
     struct sym3 a = {.xx = array[0][slot], .yy = array[1][slot], .zz = array[2][slot]};
@@ -36,7 +81,7 @@ TALUS_INLINE struct sym3 components_load(double *const array[SYM3_COMPONENTS], s
     return a;
 }
 
-TALUS_INLINE void components_store(double *const array[SYM3_COMPONENTS], size_t slot,
+TALUS_INLINE void components_store(real *const array[SYM3_COMPONENTS], size_t slot,
                                    size_t components, struct sym3 a)
 {
     array[0][slot] = a.xx;
@@ -53,7 +98,7 @@ TALUS_INLINE void components_store(double *const array[SYM3_COMPONENTS], size_t 
 TALUS_INLINE struct sym3 components_load_rate(const struct material_batch *batch, size_t slot,
                                               size_t components)
 {
-    const double *const *rate = batch->rate;
+    const real *const *rate = batch->rate;
     struct sym3 a = {.xx = rate[0][slot], .yy = rate[1][slot], .zz = rate[2][slot]};
     if (components > 3)
         a.xy = rate[3][slot];
@@ -64,12 +109,12 @@ TALUS_INLINE struct sym3 components_load_rate(const struct material_batch *batch
     return a;
 }
 
-TALUS_INLINE double minimum(double a, double b)
+TALUS_INLINE real minimum(real a, real b)
 {
     return a < b ? a : b;
 }
 
-TALUS_INLINE double maximum(double a, double b)
+TALUS_INLINE real maximum(real a, real b)
 {
     return a > b ? a : b;
 }

@@ -30,9 +30,9 @@ static bool is_critical_state(const double *values)
     return !isnan(values[MOBILISED_A0]) && !isnan(values[MOBILISED_A5]);
 }
 
-TALUS_INLINE double tangent_deg(double angle)
+TALUS_INLINE real tangent_deg(real angle)
 {
-    return elementary_tangent_deg(minimum(maximum(angle, 0.0), angle_limit_deg));
+    return (real)elementary_tangent_deg(minimum(maximum(angle, 0), (real)angle_limit_deg));
 }
 
 size_t mobilised_check(const double *values, struct material_issue *items, size_t capacity)
@@ -77,12 +77,13 @@ void mobilised_prepare(const double *values, void *constants)
         .critical_decay = read_hardening(values, MOBILISED_A5),
         .critical_state = is_critical_state(values),
         .strain_scale = isnan(values[MOBILISED_A0]) ? 1.0 : values[MOBILISED_STRAIN_SCALE],
-        .deviatoric_share = measure == MEASURE_VOLUMETRIC ? 0.0 : 1.0,
-        .volumetric_share = measure == MEASURE_DEVIATORIC ? 0.0 : 1.0,
+        .total_share = measure == MEASURE_TOTAL ? 1.0 : 0.0,
+        .deviatoric_share = measure == MEASURE_DEVIATORIC ? 1.0 : 0.0,
+        .spherical_share = measure == MEASURE_VOLUMETRIC ? 1.0 : 0.0,
         .apex = 3.0 * apex,
     };
     mobilised->constant = mobilised->hardening == 0.0 && mobilised->initial_drop == 0.0;
-    mobilised->tangent = tangent_deg(residual);
+    mobilised->tangent = tangent_deg((real)residual);
     /* without hardening the critical-state angle is the friction angle: no dilation */
     bool none = mobilised->critical_state || isnan(values[MOBILISED_DILATION_ANGLE]);
     mobilised->flow_tangent = none ? 0.0 : tan(angle_radians(values[MOBILISED_DILATION_ANGLE]));
@@ -105,7 +106,7 @@ void mobilised_initialise(const void *constants, const double strain[SYM3_COMPON
 }
 
 void mobilised_strain_energy(const void *constants, const struct material_batch *batch,
-                             double *energy)
+                             real *energy)
 {
     const struct mobilised *mobilised = constants;
     elasticity_strain_energy(&mobilised->elasticity, batch, energy);
@@ -122,55 +123,112 @@ double mobilised_initial_friction_angle_deg(const double *values)
 {
     /* lambda = 0 and no pressure: pressure can only raise the angle */
     double angle = read_residual(values) - read_hardening(values, MOBILISED_A4);
-    return minimum(maximum(angle, 0.0), angle_limit_deg);
+    return fmin(fmax(angle, 0.0), angle_limit_deg);
+}
+
+/* Angles [deg], kept within 0 ... 89, become their tangents. */
+static void take_tangents(size_t count, real *angles)
+{
+#pragma omp simd
+    for (size_t index = 0; index < count; index++)
+        angles[index] = tangent_deg(angles[index]);
 }
 
 void mobilised_angles_at_start(const struct mobilised *mobilised,
                                const struct material_batch *batch, size_t begin, size_t count,
                                struct mobilised_angles *angles)
 {
-    const struct mobilised m = *mobilised;
-    const double *measure = batch->history[MOBILISED_STATE_LAMBDA];
-    const double *invariant = batch->history[MOBILISED_STATE_INVARIANT];
+    const real *measure = batch->history[MOBILISED_STATE_LAMBDA] + begin;
+    const real *invariant = batch->history[MOBILISED_STATE_INVARIANT] + begin;
+    const real residual = (real)mobilised->residual;
+    const real hardening = (real)(mobilised->hardening * mobilised->strain_scale);
+    const real initial_drop = (real)mobilised->initial_drop;
+    const real pressure_decay = (real)mobilised->pressure_decay;
+    const real strain_decay = (real)(mobilised->strain_decay * mobilised->strain_scale);
+    const real critical_decay = (real)(mobilised->critical_decay * mobilised->strain_scale);
+    count = whole_rows(count);
     for (size_t index = 0; index < count; index++) {
-        angles->tangent[index] = m.tangent;
-        angles->flow_tangent[index] = m.flow_tangent;
+        angles->tangent[index] = (real)mobilised->tangent;
+        angles->flow_tangent[index] = (real)mobilised->flow_tangent;
     }
-    if (m.constant)
+    if (mobilised->constant)
         return;
 #pragma omp simd
     for (size_t index = 0; index < count; index++) {
-        double lambda = m.strain_scale * measure[begin + index];
-        double exponent = m.pressure_decay * invariant[begin + index] - m.strain_decay * lambda;
-        double peak = m.hardening * lambda - m.initial_drop;
-        angles->tangent[index] = tangent_deg(m.residual + peak * elementary_exp(exponent));
+        real exponent = pressure_decay * invariant[index] - strain_decay * measure[index];
+        real peak = hardening * measure[index] - initial_drop;
+        angles->tangent[index] = residual + peak * (real)elementary_exp(exponent);
     }
-    if (!m.critical_state)
+    take_tangents(count, angles->tangent);
+    if (!mobilised->critical_state)
         return;
 #pragma omp simd
     for (size_t index = 0; index < count; index++) {
-        double lambda = m.strain_scale * measure[begin + index];
-        double drop = m.initial_drop * elementary_exp(-m.critical_decay * lambda);
-        angles->flow_tangent[index] = angles->tangent[index] - tangent_deg(m.residual - drop);
+        real drop = initial_drop * (real)elementary_exp(-critical_decay * measure[index]);
+        angles->flow_tangent[index] = residual - drop;
+    }
+    take_tangents(count, angles->flow_tangent);
+#pragma omp simd
+    for (size_t index = 0; index < count; index++)
+        angles->flow_tangent[index] = angles->tangent[index] - angles->flow_tangent[index];
+}
+
+void mobilised_cone_slopes(size_t count, const real *tangent, real *slope)
+{
+    const real factor = (real)1.632993161855452; /* 2 sqrt(2/3) */
+    count = whole_rows(count);
+#pragma omp simd
+    for (size_t index = 0; index < count; index++) {
+        real tangent_here = tangent[index];
+        slope[index] =
+            factor * tangent_here / (3 * real_sqrt(1 + tangent_here * tangent_here) - tangent_here);
     }
 }
 
-void mobilised_advance(const struct mobilised *mobilised, const struct material_batch *batch,
-                       size_t begin, size_t count, const struct invariants *invariants)
+void mobilised_return(const struct mobilised *mobilised, const struct material_batch *batch,
+                      size_t begin, size_t count, const real *slopes, const real *flow_slopes,
+                      struct invariants *invariants)
 {
-    double *measure = batch->history[MOBILISED_STATE_LAMBDA];
-    double *invariant = batch->history[MOBILISED_STATE_INVARIANT];
-    double bulk = mobilised->elasticity.bulk;
-    double shear = mobilised->elasticity.shear;
-    double deviatoric_share = mobilised->deviatoric_share;
-    double volumetric_share = mobilised->volumetric_share;
+    const struct stiffness stiffness = elasticity_stiffness(&mobilised->elasticity);
+    const real apex = (real)mobilised->apex;
+    const real bulk = 3 * stiffness.bulk;
+    const real total_share = (real)mobilised->total_share;
+    const real deviatoric_share = (real)mobilised->deviatoric_share;
+    const real spherical_share = (real)(sqrt(3.0) * mobilised->spherical_share);
+    const real shear_inverse = 1 / stiffness.shear;
+    const real bulk_inverse = 1 / bulk;
+    real *measure = batch->history[MOBILISED_STATE_LAMBDA] + begin;
+    real *invariant = batch->history[MOBILISED_STATE_INVARIANT] + begin;
+    real *plastic_strain = batch->plastic_strain + begin;
+    real *dissipation = batch->dissipation + begin;
+    count = whole_rows(count);
 #pragma omp simd
     for (size_t index = 0; index < count; index++) {
-        double deviatoric =
-            (1.0 - invariants->scale[index]) * invariants->norm[index] / (2.0 * shear);
-        double spherical = (invariants->trial[index] - invariants->first[index]) / (9.0 * bulk);
-        measure[begin + index] += sqrt(deviatoric_share * deviatoric * deviatoric +
-                                       volumetric_share * 3.0 * spherical * spherical);
-        invariant[begin + index] = invariants->first[index];
+        real first = invariants->first[index];
+        real norm = invariants->norm[index];
+        real slope = slopes[index];
+        real flow_slope = minimum(flow_slopes[index], slope);
+        real excess = maximum(norm + slope * (first - apex), 0);
+        real resistance = (stiffness.shear + bulk * slope * flow_slope) * norm;
+        real share = excess / (resistance > 0 ? resistance : 1); /* multiplier over |s| */
+        real multiplier = share * norm;
+        real scale = 1 - stiffness.shear * share;
+        real returned = first - bulk * flow_slope * multiplier;
+        /* where the line ends: no deviator left, beyond the apex, or nothing that resists */
+        real beyond = maximum(maximum(-scale, returned - apex), resistance > 0 ? 0 : excess);
+        bool to_apex = beyond > 0;
+        returned = to_apex ? apex : returned;
+        scale = to_apex ? 0 : scale;
+        real deviatoric = to_apex ? norm * shear_inverse : multiplier;
+        real spherical = to_apex ? (first - apex) * bulk_inverse : flow_slope * multiplier;
+        real total = flow_norm(deviatoric, spherical);
+        invariants->returned[index] = returned;
+        invariants->scale[index] = scale;
+        invariants->spherical[index] = spherical;
+        plastic_strain[index] = total;
+        dissipation[index] = flow_dissipation(scale * norm, returned, deviatoric, spherical);
+        measure[index] += total_share * total + deviatoric_share * deviatoric +
+                          spherical_share * real_absolute(spherical);
+        invariant[index] = returned;
     }
 }

@@ -40,8 +40,8 @@ struct mobilised {
     double tangent;      /* tan phi if constant */
     double flow_tangent; /* tan psi unless critical_state, or if constant */
     double strain_scale;
-    double deviatoric_share, volumetric_share; /* 1 or 0: what counts for lambda */
-    double apex;                               /* I1 at the apex, 3 c [Pa] */
+    double total_share, deviatoric_share, spherical_share; /* of what adds to lambda: 1 or 0 */
+    double apex;                                           /* I1 at the apex, 3 c [Pa] */
 };
 
 extern const char *const mobilised_strain_measures[];
@@ -54,15 +54,16 @@ double mobilised_wave_speed(const void *constants);
 void mobilised_initialise(const void *constants, const double strain[SYM3_COMPONENTS],
                           double *history);
 void mobilised_strain_energy(const void *constants, const struct material_batch *batch,
-                             double *energy);
+                             real *energy);
 void mobilised_strain_from_stress(const void *constants, const double stress[SYM3_COMPONENTS],
                                   double strain[SYM3_COMPONENTS]);
 double mobilised_initial_friction_angle_deg(const double *values);
 
 /* Angles in force over the slots of a chunk. */
 struct mobilised_angles {
-    double tangent[MATERIAL_CHUNK];      /* tan phi */
-    double flow_tangent[MATERIAL_CHUNK]; /* tan psi, before the limit by the friction */
+    MATERIAL_ALIGNED real tangent[MATERIAL_CHUNK]; /* tan phi */
+    MATERIAL_ALIGNED real
+        flow_tangent[MATERIAL_CHUNK]; /* tan psi, before the limit by the friction */
 };
 
 /* Angles at the start of the step, from the history of slots begin ... begin + count - 1. */
@@ -70,45 +71,50 @@ void mobilised_angles_at_start(const struct mobilised *mobilised,
                                const struct material_batch *batch, size_t begin, size_t count,
                                struct mobilised_angles *angles);
 
-/* lambda and I1 at the end of the step into the history. */
-void mobilised_advance(const struct mobilised *mobilised, const struct material_batch *batch,
-                       size_t begin, size_t count, const struct invariants *invariants);
+/* Outer-cone slopes of angles given by their tangents: sqrt(2/3) 2 sin/(3 - sin). */
+void mobilised_cone_slopes(size_t count, const real *tangent, real *slope);
 
-/* Outer-cone slope of an angle given by its tangent: sqrt(2/3) 2 sin/(3 - sin). */
-TALUS_INLINE double mobilised_cone_slope(double tangent)
-{
-    double sine = tangent / sqrt(1.0 + tangent * tangent);
-    return 2.0 * sqrt(2.0 / 3.0) * sine / (3.0 - sine);
-}
+/* Returns trials to |s| + slope (I1 - apex) = 0 along the flow |s| + flow_slope I1, or to the apex
+ * where the line ends there (Mast 2013, sec. 3.6.1, without hardening inside the step). A flow
+ * slope above the slope would make plastic work negative and is cut. Writes the `out` of the
+ * invariants, plastic strain, dissipation and the history: lambda and I1 at the end of the step. */
+void mobilised_return(const struct mobilised *mobilised, const struct material_batch *batch,
+                      size_t begin, size_t count, const real *slopes, const real *flow_slopes,
+                      struct invariants *invariants);
 
-/* Return to |s| + slope (I1 - apex) = 0 along the flow |s| + flow_slope I1, or to the apex where
- * the line ends there (Mast 2013, sec. 3.6.1, without hardening inside the step). A flow slope
- * above the slope would make plastic work negative and is cut. */
-TALUS_INLINE void mobilised_return(const struct mobilised *mobilised, size_t count,
-                                   const double *slopes, const double *flow_slopes,
-                                   struct invariants *invariants)
+/* What a model with mobilised friction adds: slopes |s| / (apex - I1) of its surface in the
+ * direction of the trial, from the tangents of the friction angle. */
+typedef void mobilised_surface(size_t count, const real *tangent,
+                               const struct invariants *invariants, real *slope);
+
+/* The update of a model with that surface; `with_determinant`: it reads the determinant. */
+TALUS_INLINE bool mobilised_update(const struct mobilised *mobilised,
+                                   const struct material_batch *batch, size_t components,
+                                   mobilised_surface *surface, bool with_determinant)
 {
-    double shear = 2.0 * mobilised->elasticity.shear;
-    double bulk = 9.0 * mobilised->elasticity.bulk;
-    double apex = mobilised->apex;
-#pragma omp simd
-    for (size_t index = 0; index < count; index++) {
-        double first = invariants->trial[index];
-        double norm = invariants->norm[index];
-        double slope = slopes[index];
-        double flow_slope = minimum(flow_slopes[index], slope);
-        double excess = norm + slope * (first - apex);
-        double resistance = shear + bulk * slope * flow_slope;
-        double multiplier = maximum(excess, 0.0) / (resistance > 0.0 ? resistance : 1.0);
-        double returned = first - bulk * flow_slope * multiplier;
-        double left = norm - shear * multiplier;
-        bool on_cone = resistance > 0.0 && left >= 0.0 && returned <= apex;
-        bool plastic = excess > 0.0 || first > apex;
-        double scale = on_cone ? left / (norm > 0.0 ? norm : 1.0) : 0.0;
-        double moved = on_cone ? returned : apex;
-        invariants->scale[index] = plastic ? scale : 1.0;
-        invariants->first[index] = plastic ? moved : first;
+    const struct stiffness stiffness = elasticity_stiffness(&mobilised->elasticity);
+    const size_t slots = slot_count(batch);
+    struct mobilised_angles angles;
+    struct invariants invariants;
+    MATERIAL_ALIGNED real slope[MATERIAL_CHUNK];
+    MATERIAL_ALIGNED real flow_slope[MATERIAL_CHUNK];
+    bool flowed = false;
+    for (size_t begin = 0; begin < slots; begin += MATERIAL_CHUNK) {
+        const size_t count = chunk_count(slots, begin);
+        mobilised_angles_at_start(mobilised, batch, begin, count, &angles);
+        invariants_of_trial(stiffness, batch, components, begin, count, with_determinant,
+                            &invariants);
+        surface(count, angles.tangent, &invariants, slope);
+        mobilised_cone_slopes(count, angles.flow_tangent, flow_slope);
+        mobilised_return(mobilised, batch, begin, count, slope, flow_slope, &invariants);
+        if (any_flowed(batch, begin, count)) {
+            invariants_apply(stiffness, batch, components, begin, count, &invariants);
+            flowed = true;
+        } else {
+            elasticity_apply(stiffness, batch, components, begin, count);
+        }
     }
+    return flowed;
 }
 
 #endif

@@ -92,42 +92,48 @@ static double viscosity(const void *constants)
 
 /* Volumetric strain that stores energy: an expanded fluid without tension stores none, but keeps
  * its strain, so that it carries load again only after it has closed. */
-TALUS_INLINE double loaded_strain(const struct newtonian_fluid *fluid, double strain)
+TALUS_INLINE real loaded_strain(real tension, real strain)
 {
-    return strain > 0.0 ? fluid->tension * strain : strain;
+    return strain > 0 ? tension * strain : strain;
 }
 
-TALUS_INLINE void update_stress_kernel(const struct newtonian_fluid *constants,
+TALUS_INLINE void update_stress_kernel(const struct newtonian_fluid *fluid,
                                        const struct material_batch *batch, size_t components)
 {
-    struct newtonian_fluid fluid = *constants;
-    double time_step = batch->time_step;
+    const real bulk = (real)fluid->bulk;
+    const real tension = (real)fluid->tension;
+    const real viscosity = (real)(2.0 * fluid->viscosity);
+    const real time_step = (real)batch->time_step;
+    const size_t count = slot_count(batch);
 #pragma omp simd
-    for (size_t slot = 0; slot < batch->count; slot++) {
+    for (size_t slot = 0; slot < count; slot++) {
         struct sym3 rate = components_load_rate(batch, slot, components);
         /* tau = J sigma = K ln J 1 + J 2 mu d */
-        double factor = 2.0 * fluid.viscosity * batch->volume_ratio[slot];
-        double mean = fluid.bulk * loaded_strain(&fluid, batch->strain[0][slot]);
+        real factor = viscosity * batch->volume_ratio[slot];
+        real mean = bulk * loaded_strain(tension, batch->strain[0][slot]);
         components_store(batch->stress, slot, components,
                          sym3_add_diagonal(sym3_scale(factor, rate), mean));
-        batch->plastic_strain[slot] = 0.0;
         batch->dissipation[slot] = factor * sym3_dot(rate, rate) * time_step;
     }
 }
 
-static void update_stress(const void *constants, const struct material_batch *batch)
+static bool update_stress(const void *constants, const struct material_batch *batch)
 {
     const struct newtonian_fluid *fluid = constants;
     MATERIAL_INSTANTIATE(update_stress_kernel, fluid, batch);
+    return false;
 }
 
-static void strain_energy(const void *constants, const struct material_batch *batch, double *energy)
+static void strain_energy(const void *constants, const struct material_batch *batch, real *energy)
 {
-    const struct newtonian_fluid fluid = *(const struct newtonian_fluid *)constants;
+    const struct newtonian_fluid *fluid = constants;
+    const real half_bulk = (real)(0.5 * fluid->bulk);
+    const real tension = (real)fluid->tension;
+    const size_t count = slot_count(batch);
 #pragma omp simd
-    for (size_t slot = 0; slot < batch->count; slot++) {
-        double strain = loaded_strain(&fluid, batch->strain[0][slot]);
-        energy[slot] = 0.5 * fluid.bulk * strain * strain;
+    for (size_t slot = 0; slot < count; slot++) {
+        real strain = loaded_strain(tension, batch->strain[0][slot]);
+        energy[slot] = half_bulk * strain * strain;
     }
 }
 
@@ -149,6 +155,7 @@ const struct material newtonian_fluid = {
     .own_elasticity = true,
     .volumetric = true,
     .needs_rate = true,
+    .dissipates = true,
     .constants_size = sizeof(struct newtonian_fluid),
     .check = check,
     .prepare = prepare,

@@ -68,7 +68,7 @@ TALUS_INLINE struct sym3 sym3_add_diagonal(struct sym3 a, double value)
 
 TALUS_INLINE struct sym3 sym3_deviator(struct sym3 a)
 {
-    return sym3_add_diagonal(a, -sym3_trace(a) / 3.0);
+    return sym3_add_diagonal(a, -sym3_trace(a) * (1.0 / 3.0));
 }
 
 TALUS_INLINE double sym3_determinant(struct sym3 a)
