@@ -2,6 +2,7 @@
 #include "explicit/material_stage.h"
 
 #include "antilocking/anti_locking.h"
+#include "explicit/stage_clock.h"
 #include "math/log1p_series.h"
 
 #include <assert.h>
@@ -283,12 +284,15 @@ void material_stage_run(struct run *run, const struct particle_block *block,
         if (averages)
             average_strain(run, block, model, scratch, count,
                            weights_of(run, block, scratch, material, single));
+        stage_clock_lap(scratch->clock, STAGE_ANTI_LOCKING);
         if (single)
             update_single(run, block, scratch, material, time_step);
         else
             update_compacted(run, block, scratch, material, time_step);
+        stage_clock_lap(scratch->clock, STAGE_MATERIAL);
         if (averages_stress)
             average_stress(scratch, count, weights_of(run, block, scratch, material, single));
+        stage_clock_lap(scratch->clock, STAGE_ANTI_LOCKING);
     }
 }
 
