@@ -5,9 +5,8 @@
 
 #include <math.h>
 #include <stdlib.h>
-#include <time.h>
 
-static double seconds_of(clockid_t clock)
+double benchmark_clock_seconds(clockid_t clock)
 {
     struct timespec now = {0};
     (void)clock_gettime(clock, &now);
@@ -16,12 +15,12 @@ static double seconds_of(clockid_t clock)
 
 double benchmark_thread_seconds(void)
 {
-    return seconds_of(CLOCK_THREAD_CPUTIME_ID);
+    return benchmark_clock_seconds(CLOCK_THREAD_CPUTIME_ID);
 }
 
 double benchmark_wall_seconds(void)
 {
-    return seconds_of(CLOCK_MONOTONIC);
+    return benchmark_clock_seconds(CLOCK_MONOTONIC);
 }
 
 void benchmark_calibrate(double *nanoseconds_per_tick, double *nanoseconds_per_lap)

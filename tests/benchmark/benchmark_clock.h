@@ -4,7 +4,10 @@
 #define BENCHMARK_CLOCK_H
 
 #include <stddef.h>
+#include <time.h>
 
+/* Seconds of a clock. */
+double benchmark_clock_seconds(clockid_t clock);
 /* Seconds of processor time of the calling thread: other programs on the machine do not count. */
 double benchmark_thread_seconds(void);
 /* Seconds of a clock on the wall. */

@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 #include "benchmark_isa.h"
 
+#include "talus/simulation.h"
+
 #include <limits.h>
 #include <stdbool.h>
 #include <stdio.h>
@@ -8,9 +10,6 @@
 #include <string.h>
 #include <unistd.h>
 
-#ifndef BENCHMARK_ISA
-#define BENCHMARK_ISA "plain"
-#endif
 /* Says that this process has been started by another program of the benchmark. */
 #define MARK "TALUS_BENCHMARK_STARTED"
 
@@ -35,20 +34,20 @@ static bool has_v4(void)
 #endif
 }
 
-/* Best first; the plain program has no suffix. */
+/* Best first; the plain program has no suffix, and is for all processors. */
 static const struct variant {
     const char *name, *suffix;
     bool (*available)(void);
 } variants[] = {
     {"x86-64-v4", "-x86-64-v4", has_v4},
     {"x86-64-v3", "-x86-64-v3", has_v3},
-    {"plain", "", NULL},
+    {NULL, "", NULL},
 };
 enum { VARIANT_COUNT = sizeof variants / sizeof variants[0] };
 
 const char *benchmark_isa(void)
 {
-    return BENCHMARK_ISA;
+    return talus_simulation_isa();
 }
 
 /* Path of this program without the suffix of its instruction set. 0 or -1. */
@@ -78,13 +77,14 @@ int benchmark_isa_switch(const char *wanted, char **arguments)
 {
     char path[PATH_MAX], better[PATH_MAX + 32];
     if (getenv(MARK) != NULL)
-        return wanted == NULL || strcmp(wanted, BENCHMARK_ISA) == 0 ? 0 : -1;
+        return wanted == NULL || strcmp(wanted, benchmark_isa()) == 0 ? 0 : -1;
     if (plain_path(path, sizeof path) != 0 || !set_threads())
         return -1;
     for (size_t index = 0; index < VARIANT_COUNT; index++) {
         const struct variant *variant = &variants[index];
-        if ((wanted != NULL && strcmp(wanted, variant->name) != 0) ||
-            (variant->available != NULL && !variant->available()))
+        const bool meant =
+            wanted == NULL || variant->name == NULL || strcmp(wanted, variant->name) == 0;
+        if (!meant || (variant->available != NULL && !variant->available()))
             continue;
         (void)snprintf(better, sizeof better, "%s%s", path, variant->suffix);
         if (access(better, X_OK) == 0)

@@ -1,15 +1,43 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* talus-benchmark: how fast the solver is on this machine, and against what the machine can do. */
+#include "benchmark_csv.h"
 #include "benchmark_isa.h"
+#include "benchmark_machine.h"
 #include "benchmark_options.h"
 #include "benchmark_report.h"
+#include "benchmark_table.h"
 
+#include <limits.h>
 #include <stdio.h>
+
+static int measure_one(const struct benchmark_options *options)
+{
+    struct benchmark_suite suite;
+    bool good = benchmark_suite_run_one(&suite, &options->setup, &options->effort);
+    if (good)
+        benchmark_report_one(&suite.rows[0]);
+    if (good && options->path != NULL)
+        good = benchmark_csv_write(&suite, options->path);
+    benchmark_suite_release(&suite);
+    return good ? 0 : 1;
+}
+
+static int measure_all(const struct benchmark_options *options)
+{
+    struct benchmark_suite suite;
+    char slug[128], path[PATH_MAX];
+    benchmark_processor_slug(slug, sizeof slug);
+    (void)snprintf(path, sizeof path, "%s/%s.csv", options->folder, slug);
+    bool good = benchmark_suite_run(&suite, options->form);
+    benchmark_table_print(&suite);
+    good = good && benchmark_csv_write(&suite, options->path != NULL ? options->path : path);
+    benchmark_suite_release(&suite);
+    return good ? 0 : 1;
+}
 
 int main(int argument_count, char **arguments)
 {
     struct benchmark_options options;
-    struct benchmark_result result;
     if (!benchmark_options_read(argument_count, arguments, &options))
         return 2;
     if (benchmark_isa_switch(options.isa, arguments) != 0) {
@@ -17,8 +45,5 @@ int main(int argument_count, char **arguments)
                       options.isa == NULL ? "of this machine" : options.isa);
         return 2;
     }
-    if (!benchmark_measure(&options.setup, &options.effort, &result))
-        return 1;
-    benchmark_report_one(&options.setup, &result);
-    return 0;
+    return options.whole ? measure_all(&options) : measure_one(&options);
 }

@@ -1,9 +1,10 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* One measurement: repeats of some steps, timed with and without the stage clock by turns. */
+/* Measurements: repeats of some steps, timed with and without the stage clock by turns. */
 #ifndef BENCHMARK_MEASURE_H
 #define BENCHMARK_MEASURE_H
 
 #include "benchmark_case.h"
+#include "benchmark_ceiling.h"
 #include "explicit/stage_clock.h"
 
 #include <stdint.h>
@@ -15,24 +16,32 @@ struct benchmark_effort {
 
 struct benchmark_result {
     size_t particles, active_cells;
-    double time_step; /* [s] mean */
-    /* [ns] processor time per particle-step and thread (threads 1: of that thread; more: wall
-     * clock times threads), without the stage clock */
-    double nanoseconds, fastest, quartile_low, quartile_high;
-    double simulated; /* simulated seconds per second */
+    /* [ns] per particle-step, times threads, without the stage clock. Processor time of the
+     * busiest thread (other programs do not count), and time on the wall. */
+    double nanoseconds, fastest, quartile_low, quartile_high; /* processor: median, ... */
+    double wall_nanoseconds, wall_fastest;
     /* [ns] per particle-step, summed over threads; medians, without the cost of the clock */
     double stage_nanoseconds[STAGE_COUNT];
     double clock_share;  /* what the stage clock adds to the time of a step */
+    double relative;     /* rate per core over that of the first of the set, repeat by repeat */
+    double time_step;    /* [s] mean */
+    double simulated;    /* simulated seconds per second of processor time */
+    double peak;         /* [GFLOP/s] of a core in the same repeats, double precision */
+    double bandwidth;    /* [GB/s] of a core in the same repeats, in place */
     double bytes_stored; /* per particle: its values and ids */
     double bytes_grid;   /* per particle: all that the grid holds, capacities and nodes included */
+    double bytes_moved;  /* per particle-step: particle values read and written */
     double lane_fill;    /* particles over slots walked */
     double crossings;    /* particles that left their cell, per particle-step */
     double mass_error;   /* relative change over the whole measurement */
-    double plastic_work; /* dissipated in the last repeat over what was put in as motion [-] */
+    double dissipation;  /* energy dissipated over energy turned over, compact: in a repeat */
+    bool failed;         /* the simulation went bad: rates are NAN, all else is nothing */
 };
 
-/* Runs and measures; false (with the reason on stderr) if something failed. */
-bool benchmark_measure(const struct benchmark_setup *setup, const struct benchmark_effort *effort,
-                       struct benchmark_result *result);
+/* Measures a set of setups, repeat by repeat in turns, so that they share what the machine does
+ * meanwhile. results[count]. False if nothing could be measured (the reason is on stderr). */
+bool benchmark_measure(const struct ceiling *ceiling, const struct benchmark_setup *setups,
+                       size_t count, const struct benchmark_effort *effort,
+                       struct benchmark_result *results);
 
 #endif

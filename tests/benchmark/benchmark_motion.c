@@ -16,7 +16,8 @@ static void field_at(const struct run *run, const double position[3], double amp
     for (size_t axis = 0; axis < axes; axis++) {
         const double x = k * position[axis], y = k * position[(axis + 1) % axes];
         const double turn = axis % 2 == 0 ? 1.0 : -1.0;
-        velocity[axis] = amplitude * (turn * sin(x) * cos(y) + 0.6 * sin(y + 0.7) + 0.3 * sin(x));
+        velocity[axis] = run->scene.bodies[0].velocity[axis] +
+                         amplitude * (turn * sin(x) * cos(y) + 0.6 * sin(y + 0.7) + 0.3 * sin(x));
     }
 }
 

@@ -8,8 +8,9 @@
 
 #include "explicit/run.h"
 
-/* Gives every particle the velocity of the field, times `sign` (1 or -1: back and forth, so that
- * the shape is kept), and starts the run anew from there: nodes, books and automatic step. */
+/* Gives every particle the velocity of its body and of the field, this times `sign` (1 or -1: back
+ * and forth, so that the shape is kept), and starts the run anew from there: nodes, books and
+ * automatic step. */
 TALUS_MUST_CHECK enum talus_status benchmark_set_motion(struct run *run, double sign,
                                                         struct talus_error *error);
 

@@ -11,10 +11,11 @@
 static void print_usage(void)
 {
     (void)fputs(
-        "usage: talus-benchmark --case NAME [--body compact|flow] [--particles N] [--per-axis N]\n"
+        "usage: talus-benchmark --short|--full|--smoke [--csv FILE | --results FOLDER] [--isa I]\n"
+        "       talus-benchmark --case NAME [--body compact|flow] [--particles N] [--per-axis N]\n"
         "                       [--threads T] [--ordering last|modified_last]\n"
-        "                       [--anti-locking none|cell] [--domain FACTOR] [--steps N]\n"
-        "                       [--repeats N] [--isa x86-64-v4|x86-64-v3|plain]\n"
+        "                       [--anti-locking none|cell] [--domain FACTOR] [--courant C]\n"
+        "                       [--steps N] [--repeats N] [--isa x86-64-v4|x86-64-v3|x86-64-v2]\n"
         "cases:",
         stderr);
     for (size_t index = 0; index < benchmark_case_count; index++)
@@ -40,11 +41,11 @@ static bool read_word(const char *text, const char *const words[2], bool *second
     return *second || strcmp(text, words[0]) == 0;
 }
 
-static bool read_factor(const char *text, double *value)
+static bool read_number(const char *text, double least, double *value)
 {
     char *end = NULL;
     *value = strtod(text, &end);
-    return *text != '\0' && *end == '\0' && *value >= 1 && *value <= 1e6;
+    return *text != '\0' && *end == '\0' && *value >= least && *value <= 1e6;
 }
 
 static bool read_option(struct benchmark_options *options, int letter, const char *text)
@@ -76,11 +77,27 @@ static bool read_option(struct benchmark_options *options, int letter, const cha
     case 'a':
         return read_word(text, controls, &setup->cell);
     case 'd':
-        return read_factor(text, &setup->domain_factor);
+        return read_number(text, 1, &setup->domain_factor);
+    case 'k':
+        return read_number(text, 1e-6, &setup->courant);
     case 's':
         return read_count(text, 1000000, &options->effort.steps);
     case 'r':
         return read_count(text, 1000000, &options->effort.repeats);
+    case 'S':
+    case 'F':
+    case 'M':
+        options->whole = true;
+        options->form = letter == 'S'   ? BENCHMARK_SHORT
+                        : letter == 'F' ? BENCHMARK_FULL
+                                        : BENCHMARK_SMOKE;
+        return true;
+    case 'v':
+        options->path = text;
+        return *text != '\0';
+    case 'f':
+        options->folder = text;
+        return *text != '\0';
     case 'i':
         options->isa = text;
         return true;
@@ -91,15 +108,27 @@ static bool read_option(struct benchmark_options *options, int letter, const cha
 
 bool benchmark_options_read(int argument_count, char **arguments, struct benchmark_options *options)
 {
-    static const struct option known[] = {
-        {"case", required_argument, NULL, 'c'},         {"body", required_argument, NULL, 'b'},
-        {"particles", required_argument, NULL, 'n'},    {"per-axis", required_argument, NULL, 'p'},
-        {"threads", required_argument, NULL, 't'},      {"ordering", required_argument, NULL, 'o'},
-        {"anti-locking", required_argument, NULL, 'a'}, {"domain", required_argument, NULL, 'd'},
-        {"steps", required_argument, NULL, 's'},        {"repeats", required_argument, NULL, 'r'},
-        {"isa", required_argument, NULL, 'i'},          {NULL, 0, NULL, 0}};
+    static const struct option known[] = {{"case", required_argument, NULL, 'c'},
+                                          {"body", required_argument, NULL, 'b'},
+                                          {"particles", required_argument, NULL, 'n'},
+                                          {"per-axis", required_argument, NULL, 'p'},
+                                          {"threads", required_argument, NULL, 't'},
+                                          {"ordering", required_argument, NULL, 'o'},
+                                          {"anti-locking", required_argument, NULL, 'a'},
+                                          {"domain", required_argument, NULL, 'd'},
+                                          {"courant", required_argument, NULL, 'k'},
+                                          {"steps", required_argument, NULL, 's'},
+                                          {"repeats", required_argument, NULL, 'r'},
+                                          {"short", no_argument, NULL, 'S'},
+                                          {"full", no_argument, NULL, 'F'},
+                                          {"smoke", no_argument, NULL, 'M'},
+                                          {"csv", required_argument, NULL, 'v'},
+                                          {"results", required_argument, NULL, 'f'},
+                                          {"isa", required_argument, NULL, 'i'},
+                                          {NULL, 0, NULL, 0}};
     int letter = 0;
     *options = (struct benchmark_options){
+        .folder = ".",
         .setup = {.particles = 500000, .threads = 1, .domain_factor = 1},
         .effort = {.steps = 32, .repeats = 7},
     };
@@ -111,11 +140,11 @@ bool benchmark_options_read(int argument_count, char **arguments, struct benchma
             return false;
         }
     }
-    if (optind != argument_count || options->setup.subject == NULL) {
+    if (optind != argument_count || options->whole == (options->setup.subject != NULL)) {
         print_usage();
         return false;
     }
-    if (options->setup.per_axis == 0)
+    if (!options->whole && options->setup.per_axis == 0)
         options->setup.per_axis = options->setup.subject->per_axis;
     return true;
 }

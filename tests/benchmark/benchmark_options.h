@@ -3,10 +3,14 @@
 #ifndef BENCHMARK_OPTIONS_H
 #define BENCHMARK_OPTIONS_H
 
-#include "benchmark_measure.h"
+#include "benchmark_suite.h"
 
 struct benchmark_options {
-    struct benchmark_setup setup; /* of --case; subject NULL without it */
+    bool whole; /* the suite, in this form: */
+    enum benchmark_form form;
+    const char *path; /* of the results; NULL: named after the processor, in `folder` */
+    const char *folder;
+    struct benchmark_setup setup; /* otherwise one measurement */
     struct benchmark_effort effort;
     const char *isa; /* NULL: the best */
 };

@@ -3,6 +3,7 @@
 
 #include "benchmark_isa.h"
 
+#include <math.h>
 #include <stdio.h>
 
 static const char *const stage_names[STAGE_COUNT] = {
@@ -26,22 +27,33 @@ static void print_stages(const struct benchmark_result *result)
                  100.0 * result->clock_share);
 }
 
-void benchmark_report_one(const struct benchmark_setup *setup,
-                          const struct benchmark_result *result)
+void benchmark_report_one(const struct benchmark_row *row)
 {
+    const struct benchmark_setup *setup = &row->setup;
+    const struct benchmark_result *result = &row->result;
     (void)printf("%s, %s body, %s, anti-locking %s, %zu particles (%zu per cell and axis), "
                  "%d thread%s, domain %g, %s\n",
-                 setup->subject->name, benchmark_body_name(setup->body),
-                 setup->last ? "last" : "modified_last", setup->cell ? "cell" : "none",
-                 result->particles, setup->per_axis, setup->threads, setup->threads == 1 ? "" : "s",
-                 setup->domain_factor, benchmark_isa());
+                 setup->subject->name, benchmark_body_word(setup), benchmark_ordering_word(setup),
+                 benchmark_control_word(setup), result->particles, setup->per_axis, setup->threads,
+                 setup->threads == 1 ? "" : "s", setup->domain_factor, benchmark_isa());
     (void)printf("rate %.3f million particle-steps/s per core (best %.3f, quartiles %.3f %.3f): "
-                 "%.2f ns\n",
+                 "%.2f ns; on the wall %.3f (best %.3f)\n",
                  1e3 / result->nanoseconds, 1e3 / result->fastest, 1e3 / result->quartile_high,
-                 1e3 / result->quartile_low, result->nanoseconds);
+                 1e3 / result->quartile_low, result->nanoseconds, 1e3 / result->wall_nanoseconds,
+                 1e3 / result->wall_fastest);
     (void)printf("step %.4g s, %.4g simulated s per s; bytes per particle %.0f stored, %.0f with "
-                 "the grid; lane fill %.3f; crossings %.5f; plastic work %.3g; mass error %.1g\n",
+                 "the grid; lane fill %.3f; crossings %.5f; dissipation %.3g; mass error %.1g\n",
                  result->time_step, result->simulated, result->bytes_stored, result->bytes_grid,
-                 result->lane_fill, result->crossings, result->plastic_work, result->mass_error);
+                 result->lane_fill, result->crossings, result->dissipation, result->mass_error);
+    (void)printf(
+        "meanwhile %.1f GFLOP/s and %.1f GB/s in place of a core; values of particles move "
+        "at %.1f GB/s (%.0f %%)",
+        result->peak, result->bandwidth, benchmark_row_gigabytes(row),
+        100.0 * benchmark_row_gigabytes(row) / result->bandwidth);
+    if (isfinite(row->operations))
+        (void)printf(", %.0f operations make %.1f GFLOP/s (%.0f %%)", row->operations,
+                     benchmark_row_gigaflops(row),
+                     100.0 * benchmark_row_gigaflops(row) / result->peak);
+    (void)printf("\n");
     print_stages(result);
 }

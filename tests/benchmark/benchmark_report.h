@@ -1,12 +1,11 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Results for people and for files. */
+/* One measurement in words. */
 #ifndef BENCHMARK_REPORT_H
 #define BENCHMARK_REPORT_H
 
-#include "benchmark_measure.h"
+#include "benchmark_suite.h"
 
 /* Everything about one measurement, on stdout. */
-void benchmark_report_one(const struct benchmark_setup *setup,
-                          const struct benchmark_result *result);
+void benchmark_report_one(const struct benchmark_row *row);
 
 #endif

@@ -29,6 +29,7 @@ DATA_LISTS = {
     "solver/base/messages.def",
     "solver/materials/mobilised_parameters.def",
     "solver/state/particle_fields.def",
+    "tests/benchmark/operation_counts.def",
 }
 
 
