@@ -126,6 +126,17 @@ double mobilised_initial_friction_angle_deg(const double *values)
     return fmin(fmax(angle, 0.0), angle_limit_deg);
 }
 
+static bool has_constant_dilation(const struct mobilised *mobilised)
+{
+    return mobilised->constant || !mobilised->critical_state;
+}
+
+static void fill(size_t count, real value, real *out)
+{
+    for (size_t index = 0; index < count; index++)
+        out[index] = value;
+}
+
 /* Angles [deg], kept within 0 ... 89, become their tangents. */
 static void take_tangents(size_t count, real *angles)
 {
@@ -134,9 +145,9 @@ static void take_tangents(size_t count, real *angles)
         angles[index] = tangent_deg(angles[index]);
 }
 
-void mobilised_angles_at_start(const struct mobilised *mobilised,
-                               const struct material_batch *batch, size_t begin, size_t count,
-                               struct mobilised_angles *angles)
+void mobilised_friction_at_start(const struct mobilised *mobilised,
+                                 const struct material_batch *batch, size_t begin, size_t count,
+                                 struct mobilised_angles *angles)
 {
     const real *measure = batch->history[MOBILISED_STATE_LAMBDA] + begin;
     const real *invariant = batch->history[MOBILISED_STATE_INVARIANT] + begin;
@@ -145,14 +156,11 @@ void mobilised_angles_at_start(const struct mobilised *mobilised,
     const real initial_drop = (real)mobilised->initial_drop;
     const real pressure_decay = (real)mobilised->pressure_decay;
     const real strain_decay = (real)(mobilised->strain_decay * mobilised->strain_scale);
-    const real critical_decay = (real)(mobilised->critical_decay * mobilised->strain_scale);
     count = whole_rows(count);
-    for (size_t index = 0; index < count; index++) {
-        angles->tangent[index] = (real)mobilised->tangent;
-        angles->flow_tangent[index] = (real)mobilised->flow_tangent;
-    }
-    if (mobilised->constant)
+    if (mobilised->constant) {
+        fill(count, (real)mobilised->tangent, angles->tangent);
         return;
+    }
 #pragma omp simd
     for (size_t index = 0; index < count; index++) {
         real exponent = pressure_decay * invariant[index] - strain_decay * measure[index];
@@ -160,48 +168,82 @@ void mobilised_angles_at_start(const struct mobilised *mobilised,
         angles->tangent[index] = residual + peak * (real)elementary_exp(exponent);
     }
     take_tangents(count, angles->tangent);
-    if (!mobilised->critical_state)
+}
+
+void mobilised_dilation_at_start(const struct mobilised *mobilised,
+                                 const struct material_batch *batch, size_t begin, size_t count,
+                                 struct mobilised_angles *angles)
+{
+    const real *measure = batch->history[MOBILISED_STATE_LAMBDA] + begin;
+    const real residual = (real)mobilised->residual;
+    const real initial_drop = (real)mobilised->initial_drop;
+    const real critical_decay = (real)(mobilised->critical_decay * mobilised->strain_scale);
+    real *flow_tangent = angles->flow_tangent;
+    count = whole_rows(count);
+    if (has_constant_dilation(mobilised)) {
+        fill(count, (real)mobilised->flow_tangent, flow_tangent);
         return;
+    }
 #pragma omp simd
     for (size_t index = 0; index < count; index++) {
         real drop = initial_drop * (real)elementary_exp(-critical_decay * measure[index]);
-        angles->flow_tangent[index] = residual - drop;
+        flow_tangent[index] = residual - drop;
     }
-    take_tangents(count, angles->flow_tangent);
+    take_tangents(count, flow_tangent);
 #pragma omp simd
     for (size_t index = 0; index < count; index++)
-        angles->flow_tangent[index] = angles->tangent[index] - angles->flow_tangent[index];
+        flow_tangent[index] = angles->tangent[index] - flow_tangent[index];
+}
+
+TALUS_INLINE real cone_slope_of(real tangent)
+{
+    const real factor = (real)1.632993161855452; /* 2 sqrt(2/3) */
+    return factor * tangent / (3 * real_sqrt(1 + tangent * tangent) - tangent);
 }
 
 void mobilised_cone_slopes(size_t count, const real *tangent, real *slope)
 {
-    const real factor = (real)1.632993161855452; /* 2 sqrt(2/3) */
     count = whole_rows(count);
 #pragma omp simd
-    for (size_t index = 0; index < count; index++) {
-        real tangent_here = tangent[index];
-        slope[index] =
-            factor * tangent_here / (3 * real_sqrt(1 + tangent_here * tangent_here) - tangent_here);
-    }
+    for (size_t index = 0; index < count; index++)
+        slope[index] = cone_slope_of(tangent[index]);
 }
 
-void mobilised_return(const struct mobilised *mobilised, const struct material_batch *batch,
-                      size_t begin, size_t count, const real *slopes, const real *flow_slopes,
-                      struct invariants *invariants)
+void mobilised_mark_yielding(const struct mobilised *mobilised, const struct material_batch *batch,
+                             size_t begin, size_t count, const real *slopes,
+                             const struct invariants *invariants)
 {
-    const struct stiffness stiffness = elasticity_stiffness(&mobilised->elasticity);
     const real apex = (real)mobilised->apex;
-    const real bulk = 3 * stiffness.bulk;
-    const real total_share = (real)mobilised->total_share;
-    const real deviatoric_share = (real)mobilised->deviatoric_share;
-    const real spherical_share = (real)(sqrt(3.0) * mobilised->spherical_share);
-    const real shear_inverse = 1 / stiffness.shear;
-    const real bulk_inverse = 1 / bulk;
-    real *measure = batch->history[MOBILISED_STATE_LAMBDA] + begin;
     real *invariant = batch->history[MOBILISED_STATE_INVARIANT] + begin;
     real *plastic_strain = batch->plastic_strain + begin;
     real *dissipation = batch->dissipation + begin;
     count = whole_rows(count);
+#pragma omp simd
+    for (size_t index = 0; index < count; index++) {
+        real beyond = invariants->first[index] - apex;
+        real excess = invariants->norm[index] + slopes[index] * beyond;
+        plastic_strain[index] = maximum(maximum(excess, beyond), 0);
+        dissipation[index] = 0;
+        invariant[index] = invariants->first[index];
+    }
+}
+
+/* A return on its way through two loops. */
+struct cone_flow {
+    MATERIAL_ALIGNED real deviatoric[MATERIAL_CHUNK]; /* |dev| of the plastic strain increment */
+    MATERIAL_ALIGNED real left[MATERIAL_CHUNK];       /* |s| returned [Pa] */
+};
+
+static void return_stress(const struct mobilised *mobilised, size_t count, const real *slopes,
+                          const real *flow_slopes, struct invariants *invariants,
+                          struct cone_flow *flow)
+{
+    const struct stiffness stiffness = elasticity_stiffness(&mobilised->elasticity);
+    const real apex = (real)mobilised->apex;
+    const real shear = stiffness.shear;
+    const real bulk = 3 * stiffness.bulk;
+    const real shear_inverse = 1 / shear;
+    const real bulk_inverse = 1 / bulk;
 #pragma omp simd
     for (size_t index = 0; index < count; index++) {
         real first = invariants->first[index];
@@ -209,26 +251,61 @@ void mobilised_return(const struct mobilised *mobilised, const struct material_b
         real slope = slopes[index];
         real flow_slope = minimum(flow_slopes[index], slope);
         real excess = maximum(norm + slope * (first - apex), 0);
-        real resistance = (stiffness.shear + bulk * slope * flow_slope) * norm;
+        real resistance = (shear + bulk * slope * flow_slope) * norm;
         real share = excess / (resistance > 0 ? resistance : 1); /* multiplier over |s| */
         real multiplier = share * norm;
-        real scale = 1 - stiffness.shear * share;
+        real scale = 1 - shear * share;
         real returned = first - bulk * flow_slope * multiplier;
         /* where the line ends: no deviator left, beyond the apex, or nothing that resists */
         real beyond = maximum(maximum(-scale, returned - apex), resistance > 0 ? 0 : excess);
         bool to_apex = beyond > 0;
-        returned = to_apex ? apex : returned;
         scale = to_apex ? 0 : scale;
-        real deviatoric = to_apex ? norm * shear_inverse : multiplier;
-        real spherical = to_apex ? (first - apex) * bulk_inverse : flow_slope * multiplier;
-        real total = flow_norm(deviatoric, spherical);
-        invariants->returned[index] = returned;
         invariants->scale[index] = scale;
-        invariants->spherical[index] = spherical;
+        invariants->returned[index] = to_apex ? apex : returned;
+        invariants->spherical[index] =
+            to_apex ? (first - apex) * bulk_inverse : flow_slope * multiplier;
+        flow->deviatoric[index] = to_apex ? norm * shear_inverse : multiplier;
+        flow->left[index] = scale * norm;
+    }
+}
+
+/* Plastic strain, dissipation and history of a return. */
+static void book_flow(const struct mobilised *mobilised, const struct material_batch *batch,
+                      size_t begin, size_t count, const struct invariants *invariants,
+                      const struct cone_flow *flow)
+{
+    const real total_share = (real)mobilised->total_share;
+    const real deviatoric_share = (real)mobilised->deviatoric_share;
+    const real spherical_share = (real)(sqrt(3.0) * mobilised->spherical_share);
+    real *measure = batch->history[MOBILISED_STATE_LAMBDA] + begin;
+    real *invariant = batch->history[MOBILISED_STATE_INVARIANT] + begin;
+    real *plastic_strain = batch->plastic_strain + begin;
+    real *dissipation = batch->dissipation + begin;
+#pragma omp simd
+    for (size_t index = 0; index < count; index++) {
+        real deviatoric = flow->deviatoric[index];
+        real spherical = invariants->spherical[index];
+        real returned = invariants->returned[index];
+        real total = flow_norm(deviatoric, spherical);
         plastic_strain[index] = total;
-        dissipation[index] = flow_dissipation(scale * norm, returned, deviatoric, spherical);
+        dissipation[index] = flow_dissipation(flow->left[index], returned, deviatoric, spherical);
         measure[index] += total_share * total + deviatoric_share * deviatoric +
                           spherical_share * real_absolute(spherical);
         invariant[index] = returned;
     }
+}
+
+void mobilised_return(const struct mobilised *mobilised, const struct material_batch *batch,
+                      size_t begin, size_t count, const real *slopes,
+                      const struct mobilised_angles *angles, struct invariants *invariants)
+{
+    MATERIAL_ALIGNED real flow_slope[MATERIAL_CHUNK];
+    struct cone_flow flow;
+    count = whole_rows(count);
+    if (has_constant_dilation(mobilised))
+        fill(count, cone_slope_of((real)mobilised->flow_tangent), flow_slope);
+    else
+        mobilised_cone_slopes(count, angles->flow_tangent, flow_slope);
+    return_stress(mobilised, count, slopes, flow_slope, invariants, &flow);
+    book_flow(mobilised, batch, begin, count, invariants, &flow);
 }

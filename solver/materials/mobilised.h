@@ -61,26 +61,43 @@ double mobilised_initial_friction_angle_deg(const double *values);
 
 /* Angles in force over the slots of a chunk. */
 struct mobilised_angles {
-    MATERIAL_ALIGNED real tangent[MATERIAL_CHUNK]; /* tan phi */
-    MATERIAL_ALIGNED real
-        flow_tangent[MATERIAL_CHUNK]; /* tan psi, before the limit by the friction */
+    MATERIAL_ALIGNED real tangent[MATERIAL_CHUNK];      /* tan phi */
+    MATERIAL_ALIGNED real flow_tangent[MATERIAL_CHUNK]; /* tan psi, before the limit by the
+                                                           friction */
 };
 
-/* Angles at the start of the step, from the history of slots begin ... begin + count - 1. */
-void mobilised_angles_at_start(const struct mobilised *mobilised,
-                               const struct material_batch *batch, size_t begin, size_t count,
-                               struct mobilised_angles *angles);
+/* Angles at the start of the step, from the history of slots begin ... begin + count - 1: that of
+ * friction, that of dilation (which reads the one of friction), both. */
+void mobilised_friction_at_start(const struct mobilised *mobilised,
+                                 const struct material_batch *batch, size_t begin, size_t count,
+                                 struct mobilised_angles *angles);
+void mobilised_dilation_at_start(const struct mobilised *mobilised,
+                                 const struct material_batch *batch, size_t begin, size_t count,
+                                 struct mobilised_angles *angles);
+static inline void mobilised_angles_at_start(const struct mobilised *mobilised,
+                                             const struct material_batch *batch, size_t begin,
+                                             size_t count, struct mobilised_angles *angles)
+{
+    mobilised_friction_at_start(mobilised, batch, begin, count, angles);
+    mobilised_dilation_at_start(mobilised, batch, begin, count, angles);
+}
 
 /* Outer-cone slopes of angles given by their tangents: sqrt(2/3) 2 sin/(3 - sin). */
 void mobilised_cone_slopes(size_t count, const real *tangent, real *slope);
 
-/* Returns trials to |s| + slope (I1 - apex) = 0 along the flow |s| + flow_slope I1, or to the apex
- * where the line ends there (Mast 2013, sec. 3.6.1, without hardening inside the step). A flow
- * slope above the slope would make plastic work negative and is cut. Writes the `out` of the
+/* Slots beyond |s| + slope (I1 - apex) = 0 or the apex get a positive plastic strain; the others
+ * their whole update but for the stress: no flow, and I1 into the history. */
+void mobilised_mark_yielding(const struct mobilised *mobilised, const struct material_batch *batch,
+                             size_t begin, size_t count, const real *slopes,
+                             const struct invariants *invariants);
+
+/* Returns trials to the surface along the flow |s| + flow_slope I1 of the angles' dilation, or to
+ * the apex where the line ends there (Mast 2013, sec. 3.6.1, without hardening inside the step). A
+ * flow slope above the slope would make plastic work negative and is cut. Writes the `out` of the
  * invariants, plastic strain, dissipation and the history: lambda and I1 at the end of the step. */
 void mobilised_return(const struct mobilised *mobilised, const struct material_batch *batch,
-                      size_t begin, size_t count, const real *slopes, const real *flow_slopes,
-                      struct invariants *invariants);
+                      size_t begin, size_t count, const real *slopes,
+                      const struct mobilised_angles *angles, struct invariants *invariants);
 
 /* What a model with mobilised friction adds: slopes |s| / (apex - I1) of its surface in the
  * direction of the trial, from the tangents of the friction angle. */
@@ -97,22 +114,22 @@ TALUS_INLINE bool mobilised_update(const struct mobilised *mobilised,
     struct mobilised_angles angles;
     struct invariants invariants;
     MATERIAL_ALIGNED real slope[MATERIAL_CHUNK];
-    MATERIAL_ALIGNED real flow_slope[MATERIAL_CHUNK];
     bool flowed = false;
     for (size_t begin = 0; begin < slots; begin += MATERIAL_CHUNK) {
         const size_t count = chunk_count(slots, begin);
-        mobilised_angles_at_start(mobilised, batch, begin, count, &angles);
+        mobilised_friction_at_start(mobilised, batch, begin, count, &angles);
         invariants_of_trial(stiffness, batch, components, begin, count, with_determinant,
                             &invariants);
         surface(count, angles.tangent, &invariants, slope);
-        mobilised_cone_slopes(count, angles.flow_tangent, flow_slope);
-        mobilised_return(mobilised, batch, begin, count, slope, flow_slope, &invariants);
-        if (any_flowed(batch, begin, count)) {
-            invariants_apply(stiffness, batch, components, begin, count, &invariants);
-            flowed = true;
-        } else {
+        mobilised_mark_yielding(mobilised, batch, begin, count, slope, &invariants);
+        if (!any_flowed(batch, begin, count)) {
             elasticity_apply(stiffness, batch, components, begin, count);
+            continue;
         }
+        flowed = true;
+        mobilised_dilation_at_start(mobilised, batch, begin, count, &angles);
+        mobilised_return(mobilised, batch, begin, count, slope, &angles, &invariants);
+        invariants_apply(stiffness, batch, components, begin, count, &invariants);
     }
     return flowed;
 }
