@@ -102,12 +102,22 @@ static enum talus_status refresh(struct run *run, struct talus_error *error)
     return TALUS_OK;
 }
 
+/* Puts the particles side by side again when half of the blocks have grown out of their place. */
+static int pack_if_scattered(struct run *run)
+{
+    return 2 * run->grid.loose_count > run->grid.block_count ? sparse_grid_pack(&run->grid) : 0;
+}
+
 enum talus_status run_purge(struct run *run, struct talus_error *error)
 {
     if (purge_if_sparse(run) != 0)
         return talus_error_set(error, TALUS_MEMORY, "memory", "", "out of memory at step %llu",
                                (unsigned long long)run->step);
-    return refresh(run, error);
+    const enum talus_status status = refresh(run, error);
+    if (status == TALUS_OK && pack_if_scattered(run) != 0)
+        return talus_error_set(error, TALUS_MEMORY, "memory", "", "out of memory at step %llu",
+                               (unsigned long long)run->step);
+    return status;
 }
 
 enum talus_status run_rebin(struct run *run, struct talus_error *error)

@@ -10,6 +10,9 @@
 #include <stdlib.h>
 #include <string.h>
 
+/* Blocks between what is fetched and what is worked on: about the time of a memory access. */
+enum { FIRST_PASS_AHEAD = 2, SECOND_PASS_AHEAD = 1 };
+
 int run_prepare_tiles(struct run *run)
 {
     if (sparse_grid_update_tiles(&run->grid) != 0)
@@ -51,13 +54,18 @@ static void partition_outbox(struct run *run)
     }
 }
 
-/* Fetches the particles of the block after the one at `entry`. */
-static void prefetch_next(const struct run *run, const struct tile *tile, size_t entry,
-                          uint32_t component_count)
+/* Fetches the particles of a block further on in the tile, and the nodes that no block before it
+ * touches. */
+static void prefetch_ahead(const struct run *run, const struct tile *tile, size_t entry,
+                           size_t distance, uint32_t component_count)
 {
-    if (entry + 1 < tile->end)
-        particle_block_prefetch(&run->grid.blocks[run->grid.tile_blocks[entry + 1]],
-                                component_count);
+    if (entry + distance >= tile->end)
+        return;
+    const struct particle_block *block = &run->grid.blocks[run->grid.tile_blocks[entry + distance]];
+    const size_t last = ((size_t)1 << run->grid.domain.axis_count) - 1;
+    particle_block_prefetch(block, component_count);
+    node_block_prefetch(&run->grid.nodes, block->nodes[last - 1]);
+    node_block_prefetch(&run->grid.nodes, block->nodes[last]);
 }
 
 static void kick_tile(struct run *run, const struct tile *tile, struct stage_clock *clock)
@@ -66,7 +74,7 @@ static void kick_tile(struct run *run, const struct tile *tile, struct stage_clo
     stage_clock_lap(clock, STAGE_WAIT);
     const uint32_t kicked = run->grid.layout.first_component[PARTICLE_MASS] + 1;
     for (size_t entry = tile->begin; entry < tile->end; entry++) {
-        prefetch_next(run, tile, entry, kicked);
+        prefetch_ahead(run, tile, entry, FIRST_PASS_AHEAD, kicked);
         run->kernels->kick(&context, &run->grid.blocks[run->grid.tile_blocks[entry]]);
     }
     stage_clock_lap(clock, STAGE_FIRST_PASS);
@@ -81,7 +89,7 @@ static void advance_tile(struct run *run, size_t index, struct block_scratch *sc
     sums->least_jacobian = 1.0;
     sums->bad_particle = PARTICLE_NONE;
     for (size_t entry = tile->begin; entry < tile->end; entry++) {
-        prefetch_next(run, tile, entry, run->grid.layout.double_count);
+        prefetch_ahead(run, tile, entry, SECOND_PASS_AHEAD, run->grid.layout.double_count);
         run_advance_block(run, scratch, run->grid.tile_blocks[entry], tile, sums, still);
     }
     stage_clock_lap(scratch->clock, STAGE_SECOND_PASS);
@@ -184,7 +192,11 @@ enum talus_status run_take_step(struct run *run, struct talus_error *error)
 
 enum talus_status run_start(struct run *run, struct talus_error *error)
 {
-    if (run_find_walls(run) != 0 || run_prepare_tiles(run) != 0 || run_reserve_scratch(run) != 0)
+    run->wall_node_count = 0;
+    run->walled_block_count = 0;
+    if (sparse_grid_purge(&run->grid) != 0 || run_find_walls(run) != 0 ||
+        run_prepare_tiles(run) != 0 || sparse_grid_pack(&run->grid) != 0 ||
+        run_reserve_scratch(run) != 0)
         return talus_error_set(error, TALUS_MEMORY, "memory", "", "out of memory at the start");
     partition_outbox(run);
     second_pass(run, true);

@@ -35,42 +35,64 @@ static void chunk_attach(const struct particle_layout *layout, struct particle_b
     block->body = layout->has_body ? (uint16_t *)(void *)(block->id + slots) : NULL;
 }
 
+static void chunk_release(const struct particle_block *block)
+{
+    if (!block->packed)
+        free(block->data);
+}
+
+/* Copies what the rows of both have in common; the rest of the new chunk is empty slots. */
+static void chunk_move(const struct particle_layout *layout, struct particle_block *block,
+                       uint32_t row_capacity, void *chunk, bool packed)
+{
+    const struct particle_block old = *block;
+    memset(chunk, 0, particle_chunk_bytes(layout, row_capacity));
+    chunk_attach(layout, block, chunk, row_capacity);
+    block->packed = packed;
+    assert(block->id != NULL && block->data != NULL);
+    const size_t slots = (size_t)row_capacity * LANE_COUNT;
+    const size_t old_slots = (size_t)old.row_capacity * LANE_COUNT;
+    const size_t kept = slots < old_slots ? slots : old_slots;
+    memset(block->id, 0xFF, slots * sizeof *block->id);
+    if (old.data == NULL)
+        return;
+    for (size_t component = 0; component < layout->double_count; component++)
+        memcpy(block->data + component * slots, old.data + component * old_slots,
+               kept * sizeof(real));
+    memcpy(block->id, old.id, kept * sizeof *old.id);
+    if (block->body != NULL && old.body != NULL)
+        memcpy(block->body, old.body, kept * sizeof *old.body);
+    chunk_release(&old);
+}
+
 int particle_block_reserve(const struct particle_layout *layout, struct particle_block *block,
                            uint32_t rows)
 {
     if (rows <= block->row_capacity)
         return 0;
-    /* Even capacities with some slack: a flow changes the count of a cell all the time. */
+    /* Even capacities, so that every array starts on a cache line, with some slack: a flow changes
+     * the count of a cell all the time. */
     const uint32_t capacity = (rows + rows / 4 + 1) / 2 * 2;
-    const size_t bytes = particle_chunk_bytes(layout, capacity);
-    void *chunk = aligned_alloc(CHUNK_ALIGNMENT, bytes);
+    void *chunk = aligned_alloc(CHUNK_ALIGNMENT, particle_chunk_bytes(layout, capacity));
     if (chunk == NULL)
         return -1;
-    memset(chunk, 0, bytes);
-    const struct particle_block old = *block;
-    chunk_attach(layout, block, chunk, capacity);
-    assert(block->id != NULL);
-    memset(block->id, 0xFF, (size_t)capacity * LANE_COUNT * sizeof *block->id);
-    const size_t old_slots = (size_t)old.row_capacity * LANE_COUNT;
-    const size_t slots = (size_t)capacity * LANE_COUNT;
-    if (old.data != NULL) {
-        assert(block->data != NULL && old.id != NULL);
-        for (size_t component = 0; component < layout->double_count; component++)
-            memcpy(block->data + component * slots, old.data + component * old_slots,
-                   old_slots * sizeof(real));
-        memcpy(block->id, old.id, old_slots * sizeof *old.id);
-        if (block->body != NULL && old.body != NULL)
-            memcpy(block->body, old.body, old_slots * sizeof *old.body);
-        free(old.data);
-    }
+    chunk_move(layout, block, capacity, chunk, false);
     return 0;
+}
+
+void particle_block_pack(const struct particle_layout *layout, struct particle_block *block,
+                         uint32_t rows, void *memory)
+{
+    assert(rows >= block->row_count);
+    chunk_move(layout, block, rows, memory, true);
 }
 
 void particle_block_release(struct particle_block *block)
 {
-    free(block->data);
+    chunk_release(block);
     block->data = NULL;
     block->row_capacity = 0;
+    block->packed = false;
 }
 
 int particle_block_attach(const struct particle_layout *layout, struct particle_block *block,
@@ -83,8 +105,9 @@ int particle_block_attach(const struct particle_layout *layout, struct particle_
     if (copy == NULL)
         return -1;
     memcpy(copy, chunk, bytes);
-    free(block->data);
+    chunk_release(block);
     chunk_attach(layout, block, copy, row_capacity);
+    block->packed = false;
     return 0;
 }
 

@@ -46,6 +46,7 @@ struct particle_block {
     uint32_t nodes[BLOCK_NODE_NEIGHBOURS]; /* node blocks at (x + bit 0, y + bit 1, z + bit 2) */
     bool constrained;                      /* a node of it has a boundary condition */
     bool eliminates; /* it reaches behind a boundary that eliminates particles */
+    bool packed;     /* the chunk lies in the grid's slab, which owns it */
 };
 
 /* All values of one particle, outside of any block. */
@@ -70,8 +71,8 @@ static inline real *particle_values(const struct particle_layout *layout,
            (size_t)(layout->first_component[field] + component) * block->row_capacity * LANE_COUNT;
 }
 
-/* Asks for the first `components` components of a block's particles before they are needed: blocks
- * lie anywhere in memory, so that the processor cannot guess the next one. */
+/* Asks for the first `components` components of a block's particles before they are needed: the
+ * processor does not guess across blocks. */
 static inline void particle_block_prefetch(const struct particle_block *block,
                                            uint32_t component_count)
 {
@@ -79,7 +80,7 @@ static inline void particle_block_prefetch(const struct particle_block *block,
     const char *data = (const char *)block->data;
     const size_t bytes = (size_t)component_count * block->row_capacity * LANE_COUNT * sizeof(real);
     for (size_t offset = 0; offset < bytes; offset += CACHE_LINE)
-        __builtin_prefetch(data + offset, 1);
+        __builtin_prefetch(data + offset, 0, 2);
 }
 
 /* Gives the block a chunk of at least `rows` rows, keeping its particles. 0, or -1 without memory.
@@ -87,6 +88,18 @@ static inline void particle_block_prefetch(const struct particle_block *block,
 int particle_block_reserve(const struct particle_layout *layout, struct particle_block *block,
                            uint32_t rows);
 void particle_block_release(struct particle_block *block);
+/* Moves the chunk to memory of somebody else with room for particle_chunk_bytes of as many rows as
+ * are in use, rounded up to an even number; `rows` says how many. */
+void particle_block_pack(const struct particle_layout *layout, struct particle_block *block,
+                         uint32_t rows, void *memory);
+/* Rows for packing: just enough at first; a block that has grown since keeps some of its slack. */
+static inline uint32_t particle_block_packed_rows(const struct particle_block *block, bool first)
+{
+    const uint32_t needed = (block->row_count + 1) / 2 * 2;
+    const uint32_t roomy = (block->row_count + block->row_count / 4 + 1) / 2 * 2;
+    const uint32_t least = roomy < block->row_capacity ? roomy : block->row_capacity;
+    return first || block->row_count == 0 || least < needed ? needed : least;
+}
 /* Gives an empty block a chunk with a copy of the given bytes (checkpoints). 0, or -1 without
  * memory. */
 int particle_block_attach(const struct particle_layout *layout, struct particle_block *block,

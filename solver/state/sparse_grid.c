@@ -1,14 +1,17 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 #include "state/sparse_grid.h"
 
+#include <assert.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/mman.h>
 
 void sparse_grid_release(struct sparse_grid *grid)
 {
     for (size_t index = 0; index < grid->block_count; index++)
         particle_block_release(&grid->blocks[index]);
     free(grid->blocks);
+    free(grid->slab);
     free(grid->tiles);
     free(grid->tile_blocks);
     block_map_release(&grid->map);
@@ -76,6 +79,23 @@ static int compare_tile_keys(const void *left, const void *right)
     if (a->x != b->x)
         return a->x < b->x ? -1 : 1;
     return a->block < b->block ? -1 : 1;
+}
+
+/* By tile, and inside of a tile layer by layer. */
+static int compare_blocks(const void *left, const void *right)
+{
+    const struct particle_block *a = left, *b = right;
+    const int32_t a_tile[2] = {a->cell[0] / LANE_COUNT, a->cell[1] / TILE_ROWS};
+    const int32_t b_tile[2] = {b->cell[0] / LANE_COUNT, b->cell[1] / TILE_ROWS};
+    const int32_t a_key[] = {(a_tile[0] & 1) | (a_tile[1] & 1) << 1, a_tile[1], a_tile[0],
+                             a->cell[2], a->cell[1]};
+    const int32_t b_key[] = {(b_tile[0] & 1) | (b_tile[1] & 1) << 1, b_tile[1], b_tile[0],
+                             b->cell[2], b->cell[1]};
+    for (size_t index = 0; index < sizeof a_key / sizeof a_key[0]; index++) {
+        if (a_key[index] != b_key[index])
+            return a_key[index] < b_key[index] ? -1 : 1;
+    }
+    return 0;
 }
 
 static int reserve_tiles(struct sparse_grid *grid)
@@ -169,6 +189,7 @@ int sparse_grid_purge(struct sparse_grid *grid)
     grid->nodes.layout = old.layout;
     block_map_clear(&grid->map);
     drop_empty_blocks(grid);
+    qsort(grid->blocks, grid->block_count, sizeof *grid->blocks, compare_blocks);
     const int status = reconnect_blocks(grid);
     for (size_t index = 0; index < grid->nodes.count; index++) {
         const int32_t *place = grid->nodes.place[index];
@@ -182,6 +203,40 @@ int sparse_grid_purge(struct sparse_grid *grid)
     return status;
 }
 
+int sparse_grid_pack(struct sparse_grid *grid)
+{
+    enum { HUGE_PAGE = 2 << 20 };
+    const bool first = grid->slab == NULL;
+    size_t bytes = 0;
+    for (size_t index = 0; index < grid->block_count; index++)
+        bytes += particle_chunk_bytes(&grid->layout,
+                                      particle_block_packed_rows(&grid->blocks[index], first));
+    if (bytes == 0)
+        return 0;
+    assert(!grid->tiles_stale);
+    bytes = (bytes + HUGE_PAGE - 1) / HUGE_PAGE * HUGE_PAGE;
+    char *slab = aligned_alloc(HUGE_PAGE, bytes);
+    if (slab == NULL)
+        return -1;
+    (void)madvise(slab, bytes, MADV_HUGEPAGE); /* fewer page walks, where the system offers it */
+    size_t offset = 0;
+    for (size_t entry = 0; entry < grid->block_count; entry++) {
+        struct particle_block *block = &grid->blocks[grid->tile_blocks[entry]];
+        const uint32_t rows = particle_block_packed_rows(block, first);
+        if (rows == 0) {
+            particle_block_release(block);
+            continue;
+        }
+        particle_block_pack(&grid->layout, block, rows, slab + offset);
+        offset += particle_chunk_bytes(&grid->layout, rows);
+    }
+    free(grid->slab);
+    grid->slab = slab;
+    grid->slab_bytes = bytes;
+    grid->loose_count = 0;
+    return 0;
+}
+
 uint32_t sparse_grid_insert(struct sparse_grid *grid, const int32_t cell[3],
                             const struct particle_record *record, size_t *slot)
 {
@@ -190,6 +245,7 @@ uint32_t sparse_grid_insert(struct sparse_grid *grid, const int32_t cell[3],
         return BLOCK_NONE;
     struct particle_block *block = &grid->blocks[index];
     const uint32_t lane = (uint32_t)(cell[0] - block->cell[0]);
+    grid->loose_count += block->lane_count[lane] >= block->row_capacity;
     if (particle_block_reserve(&grid->layout, block, block->lane_count[lane] + 1) != 0)
         return BLOCK_NONE;
     *slot = particle_block_insert(&grid->layout, block, lane, record);
@@ -206,9 +262,11 @@ size_t sparse_grid_memory(const struct sparse_grid *grid)
                                 sizeof *grid->nodes.place) +
         (grid->map.capacity + grid->nodes.map.capacity) * 12 +
         grid->tile_block_capacity * (sizeof *grid->tiles + sizeof *grid->tile_blocks);
-    for (size_t index = 0; index < grid->block_count; index++)
-        bytes += particle_chunk_bytes(&grid->layout, grid->blocks[index].row_capacity);
-    return bytes;
+    for (size_t index = 0; index < grid->block_count; index++) {
+        if (!grid->blocks[index].packed)
+            bytes += particle_chunk_bytes(&grid->layout, grid->blocks[index].row_capacity);
+    }
+    return bytes + grid->slab_bytes;
 }
 
 size_t sparse_grid_particle_count(const struct sparse_grid *grid)

@@ -37,6 +37,9 @@ struct sparse_grid {
     size_t tile_block_capacity;
     bool tiles_stale; /* blocks were added or dropped */
     uint32_t row_max; /* largest row_count ever needed by a chunk */
+    void *slab;       /* the packed chunks; owned */
+    size_t slab_bytes;
+    size_t loose_count; /* chunks made since the last packing */
 };
 
 void sparse_grid_release(struct sparse_grid *grid);
@@ -45,9 +48,13 @@ void sparse_grid_release(struct sparse_grid *grid);
 uint32_t sparse_grid_require_block(struct sparse_grid *grid, const int32_t cell[3]);
 /* Sorts the blocks into tiles if they are stale. 0, or -1 without memory. */
 int sparse_grid_update_tiles(struct sparse_grid *grid);
-/* Drops blocks without particles and node blocks that no block touches; keeps the order. 0 or -1.
- */
+/* Drops blocks without particles and node blocks that no block touches, and sorts both in the order
+ * in which the passes walk over them. 0 or -1. */
 int sparse_grid_purge(struct sparse_grid *grid);
+/* Moves all chunks side by side, in the order of the passes, the first time without slack: memory
+ * is then read from front to back. No value changes. Both copies exist for a moment. 0, or -1
+ * without memory, and then nothing has changed. */
+int sparse_grid_pack(struct sparse_grid *grid);
 /* Inserts a particle whose record holds its position relative to `cell`; grows what must grow.
  * Returns the block, with the slot in *slot; BLOCK_NONE without memory. */
 uint32_t sparse_grid_insert(struct sparse_grid *grid, const int32_t cell[3],
