@@ -4,42 +4,42 @@
 #ifndef TALUS_TENSOR_H
 #define TALUS_TENSOR_H
 
-#include <math.h>
+#include "math/real.h"
 
 #define TALUS_INLINE static inline __attribute__((always_inline, unused))
 
 struct vec3 {
-    double x, y, z;
+    real x, y, z;
 };
 
 struct sym3 {
-    double xx, yy, zz, xy, yz, xz;
+    real xx, yy, zz, xy, yz, xz;
 };
 
 struct mat3 {
-    double m[3][3]; /* m[row][column] */
+    real m[3][3]; /* m[row][column] */
 };
 
-TALUS_INLINE double vec3_dot(struct vec3 a, struct vec3 b)
+TALUS_INLINE real vec3_dot(struct vec3 a, struct vec3 b)
 {
     return a.x * b.x + a.y * b.y + a.z * b.z;
 }
 
-TALUS_INLINE double sym3_trace(struct sym3 a)
+TALUS_INLINE real sym3_trace(struct sym3 a)
 {
     return a.xx + a.yy + a.zz;
 }
 
 /* a : b, every off-diagonal pair counted twice. */
-TALUS_INLINE double sym3_dot(struct sym3 a, struct sym3 b)
+TALUS_INLINE real sym3_dot(struct sym3 a, struct sym3 b)
 {
     return a.xx * b.xx + a.yy * b.yy + a.zz * b.zz +
            2.0 * (a.xy * b.xy + a.yz * b.yz + a.xz * b.xz);
 }
 
-TALUS_INLINE double sym3_norm(struct sym3 a)
+TALUS_INLINE real sym3_norm(struct sym3 a)
 {
-    return sqrt(sym3_dot(a, a));
+    return real_sqrt(sym3_dot(a, a));
 }
 
 TALUS_INLINE struct sym3 sym3_add(struct sym3 a, struct sym3 b)
@@ -48,20 +48,20 @@ TALUS_INLINE struct sym3 sym3_add(struct sym3 a, struct sym3 b)
                          a.xy + b.xy, a.yz + b.yz, a.xz + b.xz};
 }
 
-TALUS_INLINE struct sym3 sym3_scale(double factor, struct sym3 a)
+TALUS_INLINE struct sym3 sym3_scale(real factor, struct sym3 a)
 {
     return (struct sym3){factor * a.xx, factor * a.yy, factor * a.zz,
                          factor * a.xy, factor * a.yz, factor * a.xz};
 }
 
 /* a + factor b */
-TALUS_INLINE struct sym3 sym3_add_scaled(struct sym3 a, double factor, struct sym3 b)
+TALUS_INLINE struct sym3 sym3_add_scaled(struct sym3 a, real factor, struct sym3 b)
 {
     return sym3_add(a, sym3_scale(factor, b));
 }
 
 /* a + value 1 */
-TALUS_INLINE struct sym3 sym3_add_diagonal(struct sym3 a, double value)
+TALUS_INLINE struct sym3 sym3_add_diagonal(struct sym3 a, real value)
 {
     return (struct sym3){a.xx + value, a.yy + value, a.zz + value, a.xy, a.yz, a.xz};
 }
@@ -71,7 +71,7 @@ TALUS_INLINE struct sym3 sym3_deviator(struct sym3 a)
     return sym3_add_diagonal(a, -sym3_trace(a) * (1.0 / 3.0));
 }
 
-TALUS_INLINE double sym3_determinant(struct sym3 a)
+TALUS_INLINE real sym3_determinant(struct sym3 a)
 {
     return a.xx * (a.yy * a.zz - a.yz * a.yz) - a.xy * (a.xy * a.zz - a.yz * a.xz) +
            a.xz * (a.xy * a.yz - a.yy * a.xz);
@@ -87,7 +87,7 @@ TALUS_INLINE struct mat3 mat3_multiply(struct mat3 a, struct mat3 b)
     return c;
 }
 
-TALUS_INLINE double mat3_determinant(struct mat3 a)
+TALUS_INLINE real mat3_determinant(struct mat3 a)
 {
     return a.m[0][0] * (a.m[1][1] * a.m[2][2] - a.m[1][2] * a.m[2][1]) -
            a.m[0][1] * (a.m[1][0] * a.m[2][2] - a.m[1][2] * a.m[2][0]) +
