@@ -1,0 +1,9 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+#include "math/log1p_series.h"
+
+void log1p_array(size_t count, const real *x, real *out)
+{
+#pragma omp simd
+    for (size_t i = 0; i < count; i++)
+        out[i] = elementary_log1p(x[i]);
+}
