@@ -127,59 +127,164 @@ static void fill(struct arrays *arrays, size_t components, double size, uint64_t
     }
 }
 
-static void check_against_reference(size_t components, double size, uint64_t *state)
+/* Rotated tensors a I + b n (x) n: a double eigenvalue, and what rounding makes of it. */
+static void fill_uniaxial(struct arrays *arrays, size_t components, double size, uint64_t *state)
 {
-    struct arrays e;
-    struct arrays strain;
-    struct arrays back;
-    struct tensor zero = {0};
-    fill(&e, components, size, state);
-    arrays_init(&strain);
-    arrays_init(&back);
-    assert_int_equal(log_strain_batch(SLOTS, components, e.of, strain.of), 0);
-    exp_strain_batch(SLOTS, components, strain.of, back.of);
+    arrays_init(arrays);
     for (int slot = 0; slot < SLOTS; slot++) {
-        struct tensor exact = apply(arrays_get(&e, slot), half_log1p);
-        struct tensor inverse = apply(arrays_get(&strain, slot), half_expm1);
-        long double norm = distance(exact, zero);
-        assert_true(distance(arrays_get(&strain, slot), exact) <= 1e-14L * norm);
-        norm = distance(inverse, zero);
-        assert_true(distance(arrays_get(&back, slot), inverse) <= 1e-14L * norm);
+        double n[3] = {uniform(state) - 0.5, uniform(state) - 0.5, uniform(state) - 0.5};
+        n[2] = components > 4 ? n[2] : 0.0;
+        const double a = size * (uniform(state) - 0.5);
+        const double square = n[0] * n[0] + n[1] * n[1] + n[2] * n[2];
+        const double b = size * (uniform(state) - 0.5) / square;
+        for (size_t i = 0; i < 3; i++) {
+            arrays->values[i][slot] = a + b * n[i] * n[i];
+            if (components > 3 + i)
+                arrays->values[3 + i][slot] = b * n[i < 2 ? i : 0] * n[i < 2 ? i + 1 : 2];
+        }
     }
 }
 
+/* Largest error of a component, in shares of the norm of the exact tensor. */
+static double error_share(struct tensor value, struct tensor exact)
+{
+    const struct tensor zero = {0};
+    const long double norm = distance(exact, zero);
+    long double largest = 0.0L;
+    for (int i = 0; i < 9; i++) {
+        const long double error = fabsl(value.m[i / 3][i % 3] - exact.m[i / 3][i % 3]);
+        largest = !(error <= largest) ? error : largest; /* keeps NAN */
+    }
+    return (double)(largest == 0.0L ? 0.0L : largest / norm);
+}
+
+static void assert_share(double share, double bound, const char *what, double size)
+{
+    if (!(share <= bound))
+        fail_msg("%s of size %g: error %g of the norm, more than %g", what, size, share, bound);
+}
+
+/* Each component within 1e-15 of the norm, both ways; and back within what both add up to, which
+ * the condition of the second may double. */
+static void check_against_reference(struct arrays *e, size_t components, double size)
+{
+    struct arrays strain;
+    struct arrays back;
+    struct arrays exponential;
+    arrays_init(&strain);
+    arrays_init(&back);
+    arrays_init(&exponential);
+    assert_int_equal(log_strain_batch(SLOTS, components, e->of, strain.of), 0);
+    exp_strain_batch(SLOTS, components, strain.of, back.of);
+    exp_strain_batch(SLOTS, components, e->of, exponential.of);
+    for (int slot = 0; slot < SLOTS; slot++) {
+        const struct tensor given = arrays_get(e, slot);
+        assert_share(error_share(arrays_get(&strain, slot), apply(given, half_log1p)), 1e-15, "log",
+                     size);
+        assert_share(error_share(arrays_get(&exponential, slot), apply(given, half_expm1)), 1e-15,
+                     "exp", size);
+        assert_share(error_share(arrays_get(&back, slot), given), 3e-15, "exp(log)", size);
+    }
+}
+
+static const size_t component_counts[] = {3, 4, 6};
+enum { COMPONENT_COUNTS = sizeof component_counts / sizeof component_counts[0] };
+
+/* Norms from the smallest strains to b with eigenvalues of 0.2, through the borders 0.0015 and 0.05
+ * of the series: a tensor with components of one size has a norm up to three times that. */
 static void test_reference(void **context)
 {
     (void)context;
-    const size_t components[] = {3, 4, 6};
-    const double sizes[] = {1e-12, 1e-8, 1e-4, 1e-2, 0.04, 0.06, 0.1, 0.15};
+    const double sizes[] = {1e-300, 1e-30, 1e-12, 1e-8, 1e-4,  5e-4, 8e-4, 1e-3,
+                            1.4e-3, 1e-2,  0.016, 0.02, 0.025, 0.04, 0.1,  0.15};
     uint64_t state = 1;
-    for (size_t count = 0; count < 3; count++) {
-        for (size_t size = 0; size < sizeof sizes / sizeof sizes[0]; size++)
-            check_against_reference(components[count], sizes[size], &state);
+    for (size_t count = 0; count < COMPONENT_COUNTS; count++) {
+        for (size_t index = 0; index < sizeof sizes / sizeof sizes[0]; index++) {
+            struct arrays e;
+            fill(&e, component_counts[count], sizes[index], &state);
+            check_against_reference(&e, component_counts[count], sizes[index]);
+            fill_uniaxial(&e, component_counts[count], sizes[index], &state);
+            check_against_reference(&e, component_counts[count], sizes[index]);
+        }
     }
 }
 
-/* Stretches of 1/20 ... 20, in all directions. */
-static void test_large(void **context)
+/* Small strains keep their digits beside large ones, whose way they go. */
+static void test_mixed(void **context)
 {
     (void)context;
+    uint64_t state = 5;
+    for (size_t count = 0; count < COMPONENT_COUNTS; count++) {
+        struct arrays e;
+        fill(&e, component_counts[count], 0.15, &state);
+        for (int slot = 0; slot < SLOTS; slot++) {
+            for (int component = 0; component < 6; component++)
+                e.values[component][slot] *= pow(10.0, -(slot % 16));
+        }
+        check_against_reference(&e, component_counts[count], 0.15);
+    }
+}
+
+/* From strains: stretches of up to 3, in all directions, where the closed form ends for some. The
+ * bound is the condition: the smallest eigenvalue of b knows only the digits of the largest. */
+static void check_large(size_t components, double size, uint64_t *state)
+{
     struct arrays strain;
     struct arrays e;
     struct arrays back;
-    struct tensor zero = {0};
-    uint64_t state = 2;
-    fill(&strain, 6, 1.5, &state);
+    fill(&strain, components, size, state);
     arrays_init(&e);
     arrays_init(&back);
-    exp_strain_batch(SLOTS, 6, strain.of, e.of);
-    assert_int_equal(log_strain_batch(SLOTS, 6, e.of, back.of), 0);
+    exp_strain_batch(SLOTS, components, strain.of, e.of);
+    assert_int_equal(log_strain_batch(SLOTS, components, e.of, back.of), 0);
     for (int slot = 0; slot < SLOTS; slot++) {
-        struct tensor exact = apply(arrays_get(&strain, slot), half_expm1);
-        assert_true(distance(arrays_get(&e, slot), exact) <= 1e-14L * distance(exact, zero));
-        /* b spans many orders: its smallest eigenvalue knows only the digits of the largest */
-        exact = apply(arrays_get(&e, slot), half_log1p);
-        assert_true(distance(arrays_get(&back, slot), exact) <= 1e-12L * distance(exact, zero));
+        const struct tensor zero = {0};
+        const struct tensor given = arrays_get(&strain, slot);
+        const long double norm = distance(given, zero);
+        const double condition = (double)expl(4.0L * norm);
+        assert_share(error_share(arrays_get(&e, slot), apply(given, half_expm1)),
+                     1e-15 * (1.0 + (double)norm), "exp", size); /* the argument is rounded too */
+        assert_share(error_share(arrays_get(&back, slot), apply(arrays_get(&e, slot), half_log1p)),
+                     1e-15 + 1e-16 * condition, "log", size);
+    }
+}
+
+static void test_large(void **context)
+{
+    (void)context;
+    const double sizes[] = {0.2, 0.3, 0.45, 0.6, 1.5};
+    uint64_t state = 2;
+    for (size_t count = 0; count < COMPONENT_COUNTS; count++) {
+        for (size_t index = 0; index < sizeof sizes / sizeof sizes[0]; index++)
+            check_large(component_counts[count], sizes[index], &state);
+    }
+}
+
+/* The slots of a last, short row and of arrays of any alignment: the same bits. */
+static void test_any_count(void **context)
+{
+    (void)context;
+    uint64_t state = 4;
+    for (size_t count = 0; count < COMPONENT_COUNTS; count++) {
+        const size_t components = component_counts[count];
+        struct arrays e;
+        struct arrays all;
+        fill(&e, components, 5e-4, &state);
+        arrays_init(&all);
+        assert_int_equal(log_strain_batch(64, components, e.of, all.of), 0);
+        for (size_t slots = 1; slots < 10; slots++) {
+            struct arrays some;
+            double *in[6];
+            arrays_init(&some);
+            for (int component = 0; component < 6; component++)
+                in[component] = e.of[component] + 3;
+            assert_int_equal(log_strain_batch(slots, components, in, some.of), 0);
+            for (size_t component = 0; component < 6; component++) {
+                assert_memory_equal(some.values[component], &all.values[component][3],
+                                    slots * sizeof(double));
+                assert_true(some.values[component][slots] == 0.0);
+            }
+        }
     }
 }
 
@@ -189,7 +294,7 @@ static void test_in_place(void **context)
     struct arrays e;
     struct arrays strain;
     uint64_t state = 3;
-    fill(&e, 6, 0.1, &state); /* on both sides of the limit of the series */
+    fill(&e, 6, 0.1, &state);
     arrays_init(&strain);
     assert_int_equal(log_strain_batch(SLOTS, 6, e.of, strain.of), 0);
     assert_int_equal(log_strain_batch(SLOTS, 6, e.of, e.of), 0);
@@ -224,13 +329,44 @@ static void test_not_positive_definite(void **context)
     }
 }
 
+/* Shear that makes one eigenvalue of b negative, and two negative ones with a positive determinant;
+ * what has no exponential that a number can hold. */
+static void test_indefinite(void **context)
+{
+    (void)context;
+    for (size_t components = 4; components <= 6; components += 2) {
+        struct arrays e;
+        arrays_init(&e);
+        e.values[3][3] = 0.6;
+        e.values[0][5] = e.values[1][5] = -0.9;
+        e.values[3][5] = 0.1;
+        e.values[0][77] = e.values[1][77] = -0.9;
+        e.values[2][77] = 3.0;
+        e.values[components - 1][130] = -0.51;
+        assert_int_equal(log_strain_batch(SLOTS, components, e.of, e.of), 4);
+        for (size_t component = 0; component < components; component++) {
+            assert_true(isnan(e.values[component][3]) && isnan(e.values[component][5]));
+            assert_true(isnan(e.values[component][77]) && isnan(e.values[component][130]));
+            assert_true(e.values[component][4] == 0.0 && e.values[component][131] == 0.0);
+        }
+    }
+    struct arrays strain;
+    arrays_init(&strain);
+    strain.values[1][9] = NAN;
+    strain.values[0][10] = 1e4;
+    exp_strain_batch(SLOTS, 6, strain.of, strain.of);
+    assert_true(isnan(strain.values[0][9]) && isnan(strain.values[3][9]));
+    assert_false(fabs(strain.values[0][10]) < 1e300);
+    assert_true(strain.values[0][11] == 0.0);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_reference),
-        cmocka_unit_test(test_large),
-        cmocka_unit_test(test_in_place),
-        cmocka_unit_test(test_not_positive_definite),
+        cmocka_unit_test(test_reference),  cmocka_unit_test(test_mixed),
+        cmocka_unit_test(test_large),      cmocka_unit_test(test_any_count),
+        cmocka_unit_test(test_in_place),   cmocka_unit_test(test_not_positive_definite),
+        cmocka_unit_test(test_indefinite),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
