@@ -124,7 +124,7 @@ struct cap_slots {
     MATERIAL_ALIGNED real norm[MATERIAL_CHUNK];       /* S */
     MATERIAL_ALIGNED real first[MATERIAL_CHUNK];      /* T */
     MATERIAL_ALIGNED real multiplier[MATERIAL_CHUNK]; /* x [1/Pa] */
-    MATERIAL_ALIGNED real excess[MATERIAL_CHUNK];     /* n(x) - 1 before the last step */
+    MATERIAL_ALIGNED real live[MATERIAL_CHUNK];       /* 1 where the iteration goes on, else 0 */
 };
 
 static inline void cap_slots_collect(const struct cap_law *law, const real *plastic_strain,
@@ -147,13 +147,14 @@ static inline void cap_slots_collect(const struct cap_law *law, const real *plas
 }
 
 /* Associated return to the circle: s = s_tr/(1 + a x), I1 = I1_tr/(1 + b x), a = 4 G, b = 18 K,
- * with n(x)^2 = S^2/(1 + a x)^2 + T^2/(1 + b x)^2 = 1. One step of Halley's method for
- * 1 - 1/n(x). */
+ * with n(x)^2 = S^2/(1 + a x)^2 + T^2/(1 + b x)^2 = 1. */
 struct cap_step {
-    real excess; /* n - 1 */
+    real excess; /* n^2 - 1 */
     real change; /* of x */
 };
 
+/* One step of Halley's method for 1 - 1/n(x), with the root in n - 1 = sqrt(1 + y) - 1 replaced by
+ * y (y + 4) / (4 (y + 2)), which keeps the order of convergence. */
 TALUS_INLINE struct cap_step cap_halley(real shear, real bulk, real norm, real first, real x)
 {
     real shear_divisor = 1 + shear * x;
@@ -169,14 +170,16 @@ TALUS_INLINE struct cap_step cap_halley(real shear, real bulk, real norm, real f
     real square = shear_part + bulk_part;
     real slope = shear * shear_part + bulk * bulk_part;
     real curvature = shear * shear * shear_part + bulk * bulk * bulk_part;
-    real excess = real_sqrt(square) - 1;
-    real divisor = 2 * slope * slope - 3 * excess * (square * curvature - slope * slope);
-    divisor = maximum(divisor, slope * slope); /* far off: at most twice Newton's step */
-    return (struct cap_step){excess, 2 * excess * square * slope / divisor};
+    real excess = square - 1;
+    real top = excess * (excess + 4);
+    real newton = (4 * excess + 8) * slope * slope;
+    real halley = 2 * newton - 3 * top * (square * curvature - slope * slope);
+    /* far off: at most twice Newton's step */
+    return (struct cap_step){excess, 2 * top * square * slope / maximum(halley, newton)};
 }
 
-/* Where the iteration starts: the larger one of two lower bounds or estimates, Newton's step from
- * x = 0 and the asymptote for trials far away. */
+/* Where the iteration starts: the larger one of two estimates, Newton's step from x = 0 (a lower
+ * bound) and the asymptote for trials far away. */
 TALUS_INLINE real cap_start(real shear, real bulk, real norm, real first)
 {
     real shear_part = norm * norm;
@@ -192,34 +195,32 @@ TALUS_INLINE real cap_start(real shear, real bulk, real norm, real first)
     return maximum(near, far);
 }
 
-/* Three steps are enough for common stiffnesses; the slots that need more (K >> G) go on together,
- * and each of them stops where it would stop alone. */
+/* The slots iterate together, two or three steps for common stiffnesses; each stops where it would
+ * stop alone: once the cube of its error, which the step leaves, is nothing. */
 static inline void cap_slots_iterate(const struct cap_law *law, struct cap_slots *slots)
 {
-    enum { STEPS = 3, FURTHER_STEPS_MAX = 60 };
-    const real tolerance = 64 * REAL_EPSILON;
+    enum { STEPS_MAX = 60 };
+    const real tolerance = REAL_EPSILON / 64;
     const real shear = 2 * law->stiffness.shear;
     const real bulk = 6 * law->stiffness.bulk;
     const size_t count = whole_rows(slots->count);
 #pragma omp simd
     for (size_t place = 0; place < count; place++) {
-        real norm = slots->norm[place];
-        real first = slots->first[place];
-        real x = cap_start(shear, bulk, norm, first);
-        for (int step = 0; step < STEPS; step++)
-            x += cap_halley(shear, bulk, norm, first, x).change;
-        slots->multiplier[place] = x;
+        slots->multiplier[place] = cap_start(shear, bulk, slots->norm[place], slots->first[place]);
+        slots->live[place] = 1;
     }
-    for (int further = 0; further < FURTHER_STEPS_MAX; further++) {
-        MATERIAL_ALIGNED real changes[MATERIAL_CHUNK];
+    for (int iteration = 0; iteration < STEPS_MAX; iteration++) {
 #pragma omp simd
         for (size_t place = 0; place < count; place++) {
-            struct cap_step step = cap_halley(shear, bulk, slots->norm[place], slots->first[place],
-                                              slots->multiplier[place]);
-            changes[place] = real_absolute(step.excess) > tolerance ? step.change : 0;
-            slots->multiplier[place] += changes[place];
+            real x = slots->multiplier[place];
+            real live = slots->live[place];
+            struct cap_step step =
+                cap_halley(shear, bulk, slots->norm[place], slots->first[place], x);
+            real error = real_absolute(step.excess) * step.excess * step.excess;
+            slots->multiplier[place] = live > 0 ? x + step.change : x;
+            slots->live[place] = error > tolerance ? live : 0;
         }
-        if (!number_bits(count, changes).nonzero)
+        if (!number_bits(count, slots->live).nonzero)
             break;
     }
 }
