@@ -49,26 +49,18 @@ static void book_dissipation(const struct block_scratch *scratch, size_t count,
 }
 
 static void record_fields(const struct run *run, const struct particle_block *block,
-                          const struct block_scratch *scratch, size_t count)
+                          const struct block_scratch *scratch, size_t count, bool flowed)
 {
     const struct particle_layout *layout = &run->grid.layout;
     for (uint32_t component = 0; component < layout->component_count[PARTICLE_STRESS]; component++)
         memcpy(particle_values(layout, block, PARTICLE_STRESS, component),
                scratch->stress[component], count * sizeof(real));
-    if (layout->component_count[PARTICLE_PLASTIC_STRAIN] == 0)
+    if (layout->component_count[PARTICLE_PLASTIC_STRAIN] == 0 || !flowed)
         return;
     real *total = particle_values(layout, block, PARTICLE_PLASTIC_STRAIN, 0);
     for (size_t slot = 0; slot < count; slot += LANE_COUNT)
         lanes_store(total + slot,
                     lanes_load(total + slot) + lanes_load(scratch->plastic_strain + slot));
-}
-
-static bool has_yielded(const struct block_scratch *scratch, size_t count)
-{
-    lane_mask yielded = {0};
-    for (size_t slot = 0; slot < count; slot += LANE_COUNT)
-        yielded |= lanes_load(scratch->plastic_strain + slot) > 0;
-    return lanes_any(yielded);
 }
 
 static void source_init(const struct run *run, const struct particle_block *block,
@@ -235,11 +227,13 @@ static void stress_block(struct run *run, struct block_scratch *scratch,
                          struct particle_block *block, struct tile_sums *sums, bool still)
 {
     const size_t count = (size_t)block->row_count * LANE_COUNT;
-    material_stage_run(run, block, scratch, still ? 0.0 : run->time_step);
-    if (run->any_plastic && has_yielded(scratch, count))
+    const struct material_outcome outcome =
+        material_stage_run(run, block, scratch, still ? 0.0 : run->time_step);
+    if (outcome.flowed)
         kinematics_store(run, block, scratch);
-    book_dissipation(scratch, count, sums);
-    record_fields(run, block, scratch, count);
+    if (outcome.dissipated)
+        book_dissipation(scratch, count, sums);
+    record_fields(run, block, scratch, count, outcome.flowed);
     stage_clock_lap(scratch->clock, STAGE_STORE);
 }
 

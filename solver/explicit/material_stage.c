@@ -11,7 +11,7 @@
 /* Bit set of the materials with particles in the block. */
 static uint64_t materials_present(const struct run *run, const struct particle_block *block)
 {
-    if (block->body == NULL)
+    if (block->body == NULL || run->scene.material_count == 1)
         return (uint64_t)1 << run->body_material[0];
     uint64_t present = 0;
     const size_t count = (size_t)block->row_count * LANE_COUNT;
@@ -153,7 +153,7 @@ static void clear_unwritten(const struct material *model, const struct material_
         memset(batch->dissipation, 0, batch->count * sizeof(real));
 }
 
-static void update_single(const struct run *run, const struct particle_block *block,
+static bool update_single(const struct run *run, const struct particle_block *block,
                           struct block_scratch *scratch, size_t material, double time_step)
 {
     real *history[SCRATCH_HISTORY_MAX] = {NULL};
@@ -172,8 +172,8 @@ static void update_single(const struct run *run, const struct particle_block *bl
     }
     for (size_t component = 0; run->finite_strain && component < 3; component++)
         batch.spin[component] = scratch->spin[component];
-    run->materials[material].model->update_stress(run->materials[material].constants, &batch);
-    clear_unwritten(run->materials[material].model, &batch);
+    return run->materials[material].model->update_stress(run->materials[material].constants,
+                                                         &batch);
 }
 
 /* Copies the slots of one material side by side, and fills the last row with slots at rest. Returns
@@ -234,7 +234,7 @@ static void spread_slots(const struct run *run, const struct particle_block *blo
 }
 
 /* Compacts the slots of one material, runs it, and puts the results back. */
-static void update_compacted(const struct run *run, const struct particle_block *block,
+static bool update_compacted(const struct run *run, const struct particle_block *block,
                              struct block_scratch *scratch, size_t material, double time_step)
 {
     real *history[SCRATCH_HISTORY_MAX] = {NULL};
@@ -253,9 +253,11 @@ static void update_compacted(const struct run *run, const struct particle_block 
     }
     for (size_t component = 0; run->finite_strain && component < 3; component++)
         batch.spin[component] = scratch->compact_spin[component];
-    run->materials[material].model->update_stress(run->materials[material].constants, &batch);
-    clear_unwritten(run->materials[material].model, &batch);
+    const struct run_material *entry = &run->materials[material];
+    const bool flowed = entry->model->update_stress(entry->constants, &batch);
+    clear_unwritten(entry->model, &batch);
     spread_slots(run, block, scratch, material, history);
+    return flowed;
 }
 
 static void clear_results(const struct run *run, struct block_scratch *scratch, size_t count)
@@ -266,9 +268,10 @@ static void clear_results(const struct run *run, struct block_scratch *scratch, 
     memset(scratch->dissipation, 0, count * sizeof(real));
 }
 
-void material_stage_run(struct run *run, const struct particle_block *block,
-                        struct block_scratch *scratch, double time_step)
+struct material_outcome material_stage_run(struct run *run, const struct particle_block *block,
+                                           struct block_scratch *scratch, double time_step)
 {
+    struct material_outcome outcome = {.flowed = false, .dissipated = false};
     const size_t count = (size_t)block->row_count * LANE_COUNT;
     const bool averages = run->scene.solver.anti_locking == TALUS_CONTROL_CELL;
     const bool averages_stress =
@@ -285,15 +288,16 @@ void material_stage_run(struct run *run, const struct particle_block *block,
             average_strain(run, block, model, scratch, count,
                            weights_of(run, block, scratch, material, single));
         stage_clock_lap(scratch->clock, STAGE_ANTI_LOCKING);
-        if (single)
-            update_single(run, block, scratch, material, time_step);
-        else
-            update_compacted(run, block, scratch, material, time_step);
+        const bool flowed = single ? update_single(run, block, scratch, material, time_step)
+                                   : update_compacted(run, block, scratch, material, time_step);
+        outcome.flowed = outcome.flowed || flowed;
+        outcome.dissipated = outcome.dissipated || flowed || (model->dissipates && !model->plastic);
         stage_clock_lap(scratch->clock, STAGE_MATERIAL);
         if (averages_stress)
             average_stress(scratch, count, weights_of(run, block, scratch, material, single));
         stage_clock_lap(scratch->clock, STAGE_ANTI_LOCKING);
     }
+    return outcome;
 }
 
 void material_stage_energy(const struct run *run, const struct particle_block *block,

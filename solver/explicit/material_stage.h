@@ -5,10 +5,16 @@
 
 #include "explicit/run.h"
 
+/* What the materials of a block did in a step. */
+struct material_outcome {
+    bool flowed;     /* plastic strain: strains have to go back to their stored form */
+    bool dissipated; /* scratch->dissipation holds something */
+};
+
 /* Reads the kinematics in scratch; writes strain, stress, plastic_strain, dissipation, the history
  * of the particles, and the averaged volumetric parts into the stored strain. */
-void material_stage_run(struct run *run, const struct particle_block *block,
-                        struct block_scratch *scratch, double time_step);
+struct material_outcome material_stage_run(struct run *run, const struct particle_block *block,
+                                           struct block_scratch *scratch, double time_step);
 
 /* Strain energy per initial volume of the strains in scratch into energy[slots]. */
 void material_stage_energy(const struct run *run, const struct particle_block *block,
