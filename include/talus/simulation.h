@@ -71,6 +71,10 @@ const struct talus_column *talus_simulation_columns(const struct talus_simulatio
 /* Fills row[column count] with the present values; reaction forces are impulse / length since the
  * last call (the last step's force at t = 0). Closes the interval. */
 void talus_simulation_sample(struct talus_simulation *simulation, double *row);
+/* Announces that the end of the next step will be sampled: the step then adds up the energies along
+ * the way, for a small part of what a sample needs for them on its own. The sampled energies are
+ * the same up to rounding; nothing else depends on it. */
+void talus_simulation_expect_sample(struct talus_simulation *simulation);
 
 /* ---- metrics, warnings ---- */
 struct talus_metric {

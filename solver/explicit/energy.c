@@ -3,35 +3,91 @@
 #include "explicit/kinematics.h"
 #include "explicit/material_stage.h"
 #include "explicit/run.h"
+#include "state/wide_lanes.h"
 
 #include <math.h>
 #include <omp.h>
 #include <string.h>
 
+/* Sum over the slots of weight x value. */
+static double weighted_sum(const real *weight, const real *value, size_t count)
+{
+    wide_lanes sum = {0};
+    for (size_t slot = 0; slot < count; slot += LANE_COUNT)
+        sum += lanes_widen(lanes_load(weight + slot)) * lanes_widen(lanes_load(value + slot));
+    return wide_lanes_sum(sum);
+}
+
+static double kinetic_energy(const struct run *run, const struct particle_block *block,
+                             const real *mass, size_t count)
+{
+    const struct particle_layout *layout = &run->grid.layout;
+    wide_lanes sum = {0};
+    for (uint32_t axis = 0; axis < run->grid.domain.axis_count; axis++) {
+        const real *velocity = particle_values(layout, block, PARTICLE_VELOCITY, axis);
+        for (size_t slot = 0; slot < count; slot += LANE_COUNT) {
+            const wide_lanes v = lanes_widen(lanes_load(velocity + slot));
+            sum += lanes_widen(lanes_load(mass + slot)) * v * v;
+        }
+    }
+    return 0.5 * wide_lanes_sum(sum);
+}
+
+/* - sum m g . x, with x = where the cell is + the position in it. */
+static double potential_energy(const struct run *run, const struct particle_block *block,
+                               const real *mass, size_t count)
+{
+    const struct domain *domain = &run->grid.domain;
+    double sum = 0;
+    for (uint32_t axis = 0; axis < domain->axis_count; axis++) {
+        const double gravity = run->scene.gravity[axis];
+        if (gravity == 0)
+            continue;
+        const real *position = particle_values(&run->grid.layout, block, PARTICLE_POSITION, axis);
+        wide_lanes centre;
+        for (int32_t lane = 0; lane < LANE_COUNT; lane++)
+            centre[lane] =
+                domain_position(domain, axis, block->cell[axis] + (axis == 0 ? lane : 0), 0);
+        wide_lanes moment = {0};
+        for (size_t slot = 0; slot < count; slot += LANE_COUNT) {
+            const wide_lanes x = lanes_widen(lanes_load(position + slot));
+            moment += lanes_widen(lanes_load(mass + slot)) * (centre + domain->cell[axis] * x);
+        }
+        sum -= gravity * wide_lanes_sum(moment);
+    }
+    return sum;
+}
+
+void run_add_energy(const struct run *run, const struct particle_block *block,
+                    struct block_scratch *scratch, struct tile_sums *sums)
+{
+    const size_t count = (size_t)block->row_count * LANE_COUNT;
+    const real *mass = particle_values(&run->grid.layout, block, PARTICLE_MASS, 0);
+    real *energy = scratch->dissipation;
+    material_stage_energy(run, block, scratch, energy);
+    sums->strain += weighted_sum(scratch->reference_volume, energy, count);
+    sums->kinetic += kinetic_energy(run, block, mass, count);
+    sums->potential += potential_energy(run, block, mass, count);
+}
+
 static void measure_block(const struct run *run, const struct particle_block *block,
                           struct block_scratch *scratch, struct tile_sums *sums)
 {
-    const struct domain *domain = &run->grid.domain;
-    const struct particle_layout *layout = &run->grid.layout;
-    const size_t count = (size_t)block->row_count * LANE_COUNT;
-    real *energy = scratch->dissipation;
-    if (count == 0)
+    if (block->row_count == 0)
         return;
     kinematics_load(run, block, scratch);
-    material_stage_energy(run, block, scratch, energy);
-    const real *mass = particle_values(layout, block, PARTICLE_MASS, 0);
-    for (size_t i = 0; i < count; i++)
-        sums->strain += scratch->reference_volume[i] * energy[i];
-    for (uint32_t axis = 0; axis < domain->axis_count; axis++) {
-        const real *velocity = particle_values(layout, block, PARTICLE_VELOCITY, axis);
-        const real *position = particle_values(layout, block, PARTICLE_POSITION, axis);
-        const double gravity = run->scene.gravity[axis];
-        for (size_t i = 0; i < count; i++) {
-            const int32_t cell = block->cell[axis] + (axis == 0 ? (int32_t)(i % LANE_COUNT) : 0);
-            sums->kinetic += 0.5 * mass[i] * velocity[i] * velocity[i];
-            sums->potential -= mass[i] * gravity * domain_position(domain, axis, cell, position[i]);
-        }
+    run_add_energy(run, block, scratch, sums);
+}
+
+void run_book_energy(struct run *run)
+{
+    run->energy.kinetic = run->energy.strain = run->energy.potential = 0;
+    for (size_t index = 0; index < run->grid.tile_count; index++) {
+        run->energy.kinetic += run->tile_sums[index].kinetic;
+        run->energy.strain += run->tile_sums[index].strain;
+        run->energy.potential += run->tile_sums[index].potential;
     }
+    run->energy_step = run->step;
 }
 
 void run_measure_energy(struct run *run)
@@ -48,12 +104,7 @@ void run_measure_energy(struct run *run)
                 measure_block(run, &run->grid.blocks[run->grid.tile_blocks[entry]], scratch, sums);
         }
     }
-    run->energy.kinetic = run->energy.strain = run->energy.potential = 0;
-    for (size_t index = 0; index < run->grid.tile_count; index++) {
-        run->energy.kinetic += run->tile_sums[index].kinetic;
-        run->energy.strain += run->tile_sums[index].strain;
-        run->energy.potential += run->tile_sums[index].potential;
-    }
+    run_book_energy(run);
 }
 
 double run_numerical_loss(const struct run *run)
@@ -114,4 +165,9 @@ void run_book_eliminated_energy(struct run *run, const struct particle_record *r
         potential -= record->values[layout->first_component[PARTICLE_MASS]] *
                      run->scene.gravity[axis] * position[axis];
     run->energy.eliminated += sums.kinetic + sums.strain + potential;
+    if (run->energy_step == run->step) {
+        run->energy.kinetic -= sums.kinetic;
+        run->energy.strain -= sums.strain;
+        run->energy.potential -= potential;
+    }
 }

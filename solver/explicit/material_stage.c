@@ -313,6 +313,11 @@ void material_stage_energy(const struct run *run, const struct particle_block *b
                                    .history = history};
     for (size_t component = 0; component < run->strain_components; component++)
         batch.strain[component] = scratch->strain[component];
+    if (is_single(present)) {
+        const struct run_material *entry = &run->materials[__builtin_ctzll(present)];
+        entry->model->strain_energy(entry->constants, &batch, energy);
+        return;
+    }
     memset(energy, 0, count * sizeof *energy);
     for (size_t material = 0; material < run->scene.material_count; material++) {
         if ((present >> material & 1) == 0)

@@ -71,7 +71,7 @@ struct tile_sums {
     double least_jacobian;                 /* smallest det of an incremental deformation gradient */
     uint32_t bad_particle;                 /* id of one where that is not positive, or NONE */
     double plastic_energy, viscous_energy; /* dissipated in the step [J] */
-    double kinetic, strain, potential;     /* filled by run_measure_energy [J] */
+    double kinetic, strain, potential;     /* where run->measures, and by run_measure_energy [J] */
 };
 
 struct run_energy {
@@ -133,6 +133,9 @@ struct run {
     double reference_density; /* smallest of the scene, for contact areas [kg/m^3] */
     bool over_critical_warned, failed;
 
+    bool sample_expected; /* at the end of the next step */
+    bool measures;        /* the second pass adds up the energies */
+    uint64_t energy_step; /* whose state the kinetic, strain and potential energy are of */
     struct run_energy energy;
     struct run_audit audit;
 };
@@ -182,8 +185,14 @@ int run_reserve_scratch(struct run *run);
 TALUS_MUST_CHECK enum talus_status run_start(struct run *run, struct talus_error *error);
 
 /* ---- energy.c ---- */
-/* Kinetic, strain and potential energy of the present state into run->energy. */
+/* Kinetic, strain and potential energy of the present state into run->energy: a pass over all
+ * particles, of about half a step. */
 void run_measure_energy(struct run *run);
+/* Adds the energies of a block whose elastic strains and initial volumes are in scratch. */
+void run_add_energy(const struct run *run, const struct particle_block *block,
+                    struct block_scratch *scratch, struct tile_sums *sums);
+/* The sums of the tiles into run->energy. */
+void run_book_energy(struct run *run);
 /* Energy that the method itself has lost so far (negative: gained), and the turnover [J]. */
 double run_numerical_loss(const struct run *run);
 double run_energy_turnover(const struct run *run);

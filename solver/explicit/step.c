@@ -166,6 +166,8 @@ enum talus_status run_take_step(struct run *run, struct talus_error *error)
     }
     run_update_nodes(run);
     stage_clock_lap(clock, STAGE_UPDATE_NODES);
+    run->measures = run->sample_expected || health_checks_energy(run->step + 1);
+    run->sample_expected = false;
     second_pass(run, false);
     run->time += run->time_step;
     run->interval += run->time_step;
@@ -174,6 +176,8 @@ enum talus_status run_take_step(struct run *run, struct talus_error *error)
     const struct tile_sums sums = sum_tiles(run);
     run->energy.plastic += sums.plastic_energy;
     run->energy.viscous += sums.viscous_energy;
+    if (run->measures)
+        run_book_energy(run);
     count_crossers(run, clock);
     stage_clock_lap(clock, STAGE_HOUSEKEEPING);
     status = run_rebin(run, error);

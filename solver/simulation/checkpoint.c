@@ -7,12 +7,12 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { CHECKPOINT_VERSION = 2, BLOB_COUNT = 10 };
+enum { CHECKPOINT_VERSION = 3, BLOB_COUNT = 10 };
 
 struct checkpoint_header {
     uint32_t version, double_count, node_component_count, lane_count;
     uint64_t block_count, node_block_count, particle_count, face_count, boundary_count, probe_count;
-    uint64_t step, initial_particle_count, wall_node_count;
+    uint64_t step, energy_step, initial_particle_count, wall_node_count;
     uint64_t scene; /* fingerprint */
     uint32_t row_max, over_critical_warned;
     double time, time_step, critical_time_step, last_time_step, interval, duration;
@@ -44,6 +44,7 @@ static struct checkpoint_header make_header(const struct talus_simulation *simul
     header.boundary_count = run->scene.boundary_count;
     header.probe_count = run->scene.probe_count;
     header.step = run->step;
+    header.energy_step = run->energy_step;
     header.initial_particle_count = run->initial_particle_count;
     header.row_max = run->grid.row_max;
     header.over_critical_warned = run->over_critical_warned;
@@ -282,6 +283,7 @@ static bool restore_windows(struct run *run, const struct talus_blob *blob)
 static void restore_header(struct run *run, const struct checkpoint_header *header)
 {
     run->step = header->step;
+    run->energy_step = header->energy_step;
     run->initial_particle_count = header->initial_particle_count;
     run->grid.row_max = header->row_max;
     run->over_critical_warned = header->over_critical_warned != 0;
@@ -315,8 +317,7 @@ static bool restore_state(struct talus_simulation *simulation,
         memcpy(run->boundaries, found[6]->data, found[6]->bytes);
     restore_header(run, &header);
     run->outbox = malloc((run->initial_particle_count + 1) * sizeof *run->outbox);
-    simulation->probe_ids = calloc(run->scene.probe_count + 1, sizeof *simulation->probe_ids);
-    if (run->outbox == NULL || simulation->probe_ids == NULL ||
+    if (run->outbox == NULL || probes_reserve(simulation) != 0 ||
         simulation_make_columns(simulation) != 0)
         return false;
     if (found[8]->bytes > 0)

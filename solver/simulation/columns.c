@@ -150,11 +150,13 @@ void talus_simulation_sample(struct talus_simulation *simulation, double *row)
 {
     struct run *run = &simulation->run;
     double *value = row;
-    run_measure_energy(run);
+    if (run->energy_step != run->step)
+        run_measure_energy(run);
     *value++ = run->time;
     for (size_t part = 0; part < TALUS_ENERGY_PART_COUNT; part++)
         *value++ = run_energy_part(run, (enum talus_energy_part)part);
     value = sample_reactions(run, value);
+    probe_scan(run, simulation->probe_sums);
     for (size_t probe = 0; probe < run->scene.probe_count; probe++) {
         probe_sample(simulation, probe, value);
         value += probe_columns(&run->scene, &run->scene.probes[probe], NULL);

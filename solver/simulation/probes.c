@@ -5,6 +5,7 @@
 #include <assert.h>
 #include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 static const char *const vector_suffix[3] = {"x", "y", "z"};
@@ -124,95 +125,21 @@ void run_slot_position(const struct run *run, const struct particle_block *block
     }
 }
 
-static bool probe_selects(const struct run *run, const struct talus_probe *probe,
-                          const struct particle_block *block, size_t slot, const double position[3])
-{
-    if (block->id[slot] == PARTICLE_NONE)
-        return false;
-    if (probe->body_index >= 0 && probe->body_index != (block->body ? block->body[slot] : 0))
-        return false;
-    for (size_t axis = 0; axis < run->grid.domain.axis_count; axis++) {
-        if (position[axis] < probe->within_min[axis] || position[axis] > probe->within_max[axis])
-            return false;
-    }
-    return probe->on_boundary < 0 ||
-           wall_set_distance(&run->walls, (size_t)probe->on_boundary, position) <=
-               0.5 * domain_smallest_cell(&run->grid.domain) * (1 + 1e-9);
-}
-
-/* Sums over the selected particles. */
-struct probe_sums {
-    double mass, first[3]; /* sum m, sum m x */
-    double low, high;      /* of x . along, with half a particle on each side */
-    double spread;         /* sum m |x . along - mean| */
-    double integral[9];
-    size_t count;
-};
-
-static double along_of(const struct talus_probe *probe, const double position[3])
-{
-    return position[0] * probe->along[0] + position[1] * probe->along[1] +
-           position[2] * probe->along[2];
-}
-
-static void add_particle(const struct run *run, const struct talus_probe *probe,
-                         const struct particle_block *block, size_t slot, const double position[3],
-                         struct probe_sums *sums)
-{
-    const struct particle_layout *layout = &run->grid.layout;
-    const double mass = particle_values(layout, block, PARTICLE_MASS, 0)[slot];
-    const double volume = particle_values(layout, block, PARTICLE_VOLUME, 0)[slot];
-    const double half = 0.5 * pow(volume, 1.0 / (double)run->grid.domain.axis_count);
-    const double reach = along_of(probe, position);
-    sums->count++;
-    sums->mass += mass;
-    for (size_t axis = 0; axis < 3; axis++)
-        sums->first[axis] += mass * position[axis];
-    sums->low = fmin(sums->low, reach - half);
-    sums->high = fmax(sums->high, reach + half);
-    if (probe->kind == TALUS_PROBE_INTEGRAL) {
-        double values[9] = {0};
-        field_values(run, block, slot, probe->field, values);
-        for (size_t component = 0; component < field_components(probe->field); component++)
-            sums->integral[component] += volume * values[component];
-    }
-}
-
-static struct probe_sums sum_particles(const struct run *run, const struct talus_probe *probe,
-                                       double mean)
-{
-    struct probe_sums sums = {.low = INFINITY, .high = -INFINITY};
-    for (size_t index = 0; index < run->grid.block_count; index++) {
-        const struct particle_block *block = &run->grid.blocks[index];
-        for (size_t slot = 0; slot < (size_t)block->row_count * LANE_COUNT; slot++) {
-            double position[3];
-            run_slot_position(run, block, slot, position);
-            if (!probe_selects(run, probe, block, slot, position))
-                continue;
-            add_particle(run, probe, block, slot, position, &sums);
-            sums.spread += particle_values(&run->grid.layout, block, PARTICLE_MASS, 0)[slot] *
-                           fabs(along_of(probe, position) - mean);
-        }
-    }
-    return sums;
-}
-
 /* Front, height and extent; 0 where nothing is selected. */
 static double geometry_value(const struct run *run, const struct talus_probe *probe,
                              const struct probe_sums *sums)
 {
     if (sums->count == 0)
         return 0;
+    if (probe->measure == TALUS_MEASURE_PARTICLE)
+        return probe->kind == TALUS_PROBE_EXTENT ? sums->high - sums->low : sums->high;
     const double mean = (sums->first[0] * probe->along[0] + sums->first[1] * probe->along[1] +
                          sums->first[2] * probe->along[2]) /
                         sums->mass;
     if (probe->kind != TALUS_PROBE_EXTENT)
-        return probe->measure == TALUS_MEASURE_PARTICLE ? sums->high : 2 * mean;
-    if (probe->measure == TALUS_MEASURE_PARTICLE)
-        return sums->high - sums->low;
+        return 2 * mean;
     /* A uniform bar has a mean distance of a quarter of its length from its centre. */
-    const struct probe_sums again = sum_particles(run, probe, mean);
-    return 4 * again.spread / again.mass;
+    return 4 * probe_scan_spread(run, probe, mean) / sums->mass;
 }
 
 static void choose(const struct talus_probe *probe, const double *all, size_t full, double *values)
@@ -238,23 +165,39 @@ static void sample_reaction(const struct run *run, const struct talus_probe *pro
     choose(probe, all, full_components(&run->scene, probe), values);
 }
 
-static void sample_point(const struct talus_simulation *simulation, size_t probe_index,
-                         double *values)
+/* Where a particle is. It mostly stays in its slot from one sample to the next. */
+static bool find_particle(const struct run *run, uint32_t id, struct probe_place *place)
 {
-    const struct run *run = &simulation->run;
-    const struct talus_probe *probe = &run->scene.probes[probe_index];
-    double all[9] = {0};
+    if (place->block < run->grid.block_count) {
+        const struct particle_block *block = &run->grid.blocks[place->block];
+        if (place->slot < (size_t)block->row_count * LANE_COUNT && block->id[place->slot] == id)
+            return true;
+    }
     for (size_t index = 0; index < run->grid.block_count; index++) {
         const struct particle_block *block = &run->grid.blocks[index];
         for (size_t slot = 0; slot < (size_t)block->row_count * LANE_COUNT; slot++) {
-            if (block->id[slot] == simulation->probe_ids[probe_index])
-                field_values(run, block, slot, probe->field, all);
+            if (block->id[slot] == id) {
+                *place = (struct probe_place){.block = index, .slot = slot};
+                return true;
+            }
         }
     }
+    return false;
+}
+
+static void sample_point(struct talus_simulation *simulation, size_t probe_index, double *values)
+{
+    const struct run *run = &simulation->run;
+    const struct talus_probe *probe = &run->scene.probes[probe_index];
+    const uint32_t id = simulation->probe_ids[probe_index];
+    struct probe_place *place = &simulation->probe_places[probe_index];
+    double all[9] = {0};
+    if (id != PARTICLE_NONE && find_particle(run, id, place))
+        field_values(run, &run->grid.blocks[place->block], place->slot, probe->field, all);
     choose(probe, all, field_components(probe->field), values);
 }
 
-void probe_sample(const struct talus_simulation *simulation, size_t probe_index, double *values)
+void probe_sample(struct talus_simulation *simulation, size_t probe_index, double *values)
 {
     const struct run *run = &simulation->run;
     const struct talus_probe *probe = &run->scene.probes[probe_index];
@@ -270,18 +213,18 @@ void probe_sample(const struct talus_simulation *simulation, size_t probe_index,
         sample_point(simulation, probe_index, values);
         return;
     }
-    const struct probe_sums sums = sum_particles(run, probe, 0);
+    const struct probe_sums *sums = &simulation->probe_sums[probe_index];
     if (probe->kind == TALUS_PROBE_MASS) {
-        values[0] = sums.mass;
+        values[0] = sums->mass;
     } else if (probe->kind == TALUS_PROBE_INTEGRAL) {
-        choose(probe, sums.integral, field_components(probe->field), values);
+        choose(probe, sums->integral, field_components(probe->field), values);
     } else if (probe->kind == TALUS_PROBE_CENTRE_OF_MASS) {
         double centre[3] = {0};
-        for (size_t axis = 0; sums.count > 0 && axis < 3; axis++)
-            centre[axis] = sums.first[axis] / sums.mass;
+        for (size_t axis = 0; sums->count > 0 && axis < 3; axis++)
+            centre[axis] = sums->first[axis] / sums->mass;
         choose(probe, centre, run->scene.axis_count, values);
     } else {
-        values[0] = geometry_value(run, probe, &sums);
+        values[0] = geometry_value(run, probe, sums);
     }
 }
 
@@ -304,6 +247,18 @@ static void locate_in_block(const struct run *run, const struct talus_probe *pro
             *id = block->id[slot];
         }
     }
+}
+
+int probes_reserve(struct talus_simulation *simulation)
+{
+    const size_t count = simulation->run.scene.probe_count + 1;
+    simulation->probe_ids = calloc(count, sizeof *simulation->probe_ids);
+    simulation->probe_places = calloc(count, sizeof *simulation->probe_places);
+    simulation->probe_sums = calloc(count, sizeof *simulation->probe_sums);
+    return simulation->probe_ids == NULL || simulation->probe_places == NULL ||
+                   simulation->probe_sums == NULL
+               ? -1
+               : 0;
 }
 
 void probes_locate(struct talus_simulation *simulation)

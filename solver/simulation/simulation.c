@@ -118,8 +118,7 @@ static enum talus_status prepare(struct talus_simulation *simulation, struct tal
 {
     struct run *run = &simulation->run;
     run->outbox = malloc((run->initial_particle_count + 1) * sizeof *run->outbox);
-    simulation->probe_ids = calloc(run->scene.probe_count + 1, sizeof *simulation->probe_ids);
-    if (run->outbox == NULL || simulation->probe_ids == NULL ||
+    if (run->outbox == NULL || probes_reserve(simulation) != 0 ||
         simulation_make_columns(simulation) != 0)
         return talus_error_set(error, TALUS_MEMORY, "memory", "", "out of memory");
     return TALUS_OK;
@@ -158,6 +157,8 @@ void talus_simulation_destroy(struct talus_simulation *simulation)
     free(simulation->columns);
     free(simulation->metrics);
     free(simulation->probe_ids);
+    free(simulation->probe_places);
+    free(simulation->probe_sums);
     free(simulation->blobs);
     free(simulation->blob_memory);
     free(simulation);
@@ -184,6 +185,11 @@ enum talus_status talus_simulation_step(struct talus_simulation *simulation,
                         fixed, run->critical_time_step, run->time, run->largest_speed);
     }
     return TALUS_OK;
+}
+
+void talus_simulation_expect_sample(struct talus_simulation *simulation)
+{
+    simulation->run.sample_expected = true;
 }
 
 void talus_simulation_get_state(const struct talus_simulation *simulation,

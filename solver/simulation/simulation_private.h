@@ -4,9 +4,14 @@
 #define TALUS_SIMULATION_PRIVATE_H
 
 #include "explicit/run.h"
+#include "simulation/probe_scan.h"
 #include "talus/simulation.h"
 
 enum { WARNING_CAPACITY = 32 };
+
+struct probe_place {
+    size_t block, slot;
+};
 
 struct talus_simulation {
     struct run run;
@@ -16,8 +21,10 @@ struct talus_simulation {
     size_t metric_count, metric_capacity;
     struct talus_warning warnings[WARNING_CAPACITY];
     size_t warning_first, warning_count;
-    uint32_t *probe_ids;      /* [probe_count] id of the particle of a point probe; owned */
-    struct talus_blob *blobs; /* owned, with what they point to in blob_memory */
+    uint32_t *probe_ids;              /* [probe_count] id of the particle of a point probe; owned */
+    struct probe_place *probe_places; /* [probe_count] where it was last found; owned */
+    struct probe_sums *probe_sums;    /* [probe_count] of the sample at hand; owned */
+    struct talus_blob *blobs;         /* owned, with what they point to in blob_memory */
     size_t blob_count;
     void *blob_memory;
 };
@@ -40,7 +47,10 @@ int simulation_make_columns(struct talus_simulation *simulation);
 /* Number of columns of a probe; with a simulation also their names and units. */
 size_t probe_columns(const struct talus_scene *scene, const struct talus_probe *probe,
                      struct talus_column *columns);
-void probe_sample(const struct talus_simulation *simulation, size_t probe_index, double *values);
+/* Room for what probes need, without their particles. 0, or -1 when memory ran out. */
+int probes_reserve(struct talus_simulation *simulation);
+/* After probe_scan into probe_sums, and with the energies measured. */
+void probe_sample(struct talus_simulation *simulation, size_t probe_index, double *values);
 /* Finds the particles of point probes; at t = 0. */
 void probes_locate(struct talus_simulation *simulation);
 double run_energy_part(const struct run *run, enum talus_energy_part part);

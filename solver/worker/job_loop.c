@@ -64,6 +64,15 @@ static enum talus_status take_due(struct job_run *run, const struct talus_simula
     return status;
 }
 
+/* Only the end of the next step can tell for sure, by the length of the step after it. */
+static void expect_sample(struct job_run *run, const struct talus_simulation_state *state)
+{
+    const double every = run->scene.output.history_every;
+    if (every > 0.0 &&
+        state->time + 1.55 * state->time_step > (double)run->counters.next_sample * every)
+        talus_simulation_expect_sample(run->simulation);
+}
+
 enum talus_status job_loop(struct job_run *run, struct talus_error *error)
 {
     struct talus_simulation_state state;
@@ -72,6 +81,7 @@ enum talus_status job_loop(struct job_run *run, struct talus_error *error)
     while (!state.finished) {
         double begin = job_now();
         double stepped = (double)state.particle_count;
+        expect_sample(run, &state);
         status = talus_simulation_step(run->simulation, error);
         double now = job_now();
         run->counters.step_seconds += now - begin;

@@ -365,6 +365,11 @@ enum talus_status talus_simulation_restore(const struct talus_scene *scene,
     return TALUS_OK;
 }
 
+void talus_simulation_expect_sample(struct talus_simulation *simulation)
+{
+    (void)simulation;
+}
+
 uint64_t talus_simulation_state_hash(const struct talus_simulation *simulation)
 {
     uint64_t hash = 14695981039346656037u; /* FNV-1a */

@@ -1,0 +1,48 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* Sums over many particles, in double whatever the particles are stored in: one lane per cell, the
+ * rows of a block one after the other. */
+#ifndef TALUS_WIDE_LANES_H
+#define TALUS_WIDE_LANES_H
+
+#include "state/lanes.h"
+
+typedef double wide_lanes __attribute__((vector_size(LANE_COUNT * sizeof(double))));
+typedef int64_t wide_mask __attribute__((vector_size(LANE_COUNT * sizeof(double))));
+
+static inline wide_lanes lanes_widen(lanes value)
+{
+    return __builtin_convertvector(value, wide_lanes);
+}
+
+static inline wide_lanes wide_lanes_maximum(wide_lanes a, wide_lanes b)
+{
+    const wide_mask first = a > b;
+    return (wide_lanes)((first & (wide_mask)a) | (~first & (wide_mask)b));
+}
+
+/* True if a lane is set. */
+static inline int wide_lanes_any(wide_mask mask)
+{
+    int64_t any = 0;
+    for (int lane = 0; lane < LANE_COUNT; lane++)
+        any |= mask[lane];
+    return any != 0;
+}
+
+static inline double wide_lanes_largest(wide_lanes value)
+{
+    double largest = value[0];
+    for (int lane = 1; lane < LANE_COUNT; lane++)
+        largest = value[lane] > largest ? value[lane] : largest;
+    return largest;
+}
+
+static inline double wide_lanes_sum(wide_lanes value)
+{
+    double sum = value[0];
+    for (int lane = 1; lane < LANE_COUNT; lane++)
+        sum += value[lane];
+    return sum;
+}
+
+#endif
