@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
+#include "output/decimal.h"
 #include "output/file.h"
 #include "output/history.h"
 
@@ -28,15 +29,10 @@ static void write_name(FILE *stream, const char *name)
     (void)fputc('"', stream);
 }
 
-/* The fewest of 15 or 17 digits that bring back the same bits: 0.1 rather than
- * 0.10000000000000001. */
 static void write_number(FILE *stream, double value)
 {
-    char text[32];
-    (void)snprintf(text, sizeof text, "%.15g", value);
-    if (strtod(text, NULL) != value)
-        (void)snprintf(text, sizeof text, "%.17g", value);
-    (void)fputs(text, stream);
+    char text[DECIMAL_SIZE];
+    (void)fwrite(text, 1, decimal_write(text, value), stream);
 }
 
 static bool write_table(FILE *stream, const struct history_table *table, const char *prefix)
