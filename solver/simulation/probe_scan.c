@@ -83,32 +83,109 @@ static enum cover cover_of(const struct run *run, const struct talus_probe *prob
     return cover;
 }
 
-static bool probe_selects(const struct run *run, const struct talus_probe *probe,
-                          const struct particle_block *block, size_t slot, const double position[3])
-{
-    if (block->id[slot] == PARTICLE_NONE)
-        return false;
-    if (probe->body_index >= 0 && probe->body_index != (block->body ? block->body[slot] : 0))
-        return false;
-    for (size_t axis = 0; axis < run->grid.domain.axis_count; axis++) {
-        if (position[axis] < probe->within_min[axis] || position[axis] > probe->within_max[axis])
-            return false;
-    }
-    return probe->on_boundary < 0 || wall_set_distance(&run->walls, (size_t)probe->on_boundary,
-                                                       position) <= reach_of_boundary(run);
-}
-
-static double along_of(const struct talus_probe *probe, const double position[3])
-{
-    return position[0] * probe->along[0] + position[1] * probe->along[1] +
-           position[2] * probe->along[2];
-}
-
 /* Half the edge of a cube, square or line of that volume. */
 static double half_size(const struct run *run, double volume)
 {
     const size_t axes = run->grid.domain.axis_count;
     return 0.5 * (axes == 1 ? volume : axes == 2 ? sqrt(volume) : cbrt(volume));
+}
+
+/* Where the particles of a row are on an axis. */
+static wide_lanes row_position(const struct run *run, const struct particle_block *block,
+                               uint32_t axis, size_t slot)
+{
+    const struct domain *domain = &run->grid.domain;
+    const real *position = particle_values(&run->grid.layout, block, PARTICLE_POSITION, axis);
+    const double first = domain_position(domain, axis, block->cell[axis], 0);
+    const double step = axis == 0 ? domain->cell[axis] : 0;
+    wide_lanes centre;
+    for (int32_t lane = 0; lane < LANE_COUNT; lane++)
+        centre[lane] = first + lane * step;
+    return centre + domain->cell[axis] * lanes_widen(lanes_load(position + slot));
+}
+
+/* from . x of a row: along a probe, or along the normal of a plane. */
+static wide_lanes row_along(const struct run *run, const struct particle_block *block,
+                            const double direction[3], size_t slot)
+{
+    wide_lanes sum = {0};
+    for (uint32_t axis = 0; axis < run->grid.domain.axis_count; axis++) {
+        if (direction[axis] != 0)
+            sum += direction[axis] * row_position(run, block, axis, slot);
+    }
+    return sum;
+}
+
+/* Which particles of a row lie on the boundary of a probe. */
+static wide_mask row_on_boundary(const struct run *run, const struct talus_probe *probe,
+                                 const struct particle_block *block, size_t slot)
+{
+    const struct wall_shape *shape = &run->walls.shapes[probe->on_boundary];
+    const double reach = reach_of_boundary(run);
+    if (shape->kind == TALUS_BOUNDARY_PLANE) {
+        const wide_lanes distance =
+            row_along(run, block, shape->normal, slot) -
+            (shape->normal[0] * shape->point[0] + shape->normal[1] * shape->point[1] +
+             shape->normal[2] * shape->point[2]);
+        return (distance <= reach) & (distance >= -reach);
+    }
+    wide_mask mask;
+    for (size_t lane = 0; lane < LANE_COUNT; lane++) {
+        double position[3];
+        run_slot_position(run, block, slot + lane, position);
+        mask[lane] =
+            -(wall_set_distance(&run->walls, (size_t)probe->on_boundary, position) <= reach);
+    }
+    return mask;
+}
+
+/* Which slots of a row a probe selects; empty ones may be among them. */
+static wide_mask row_selected(const struct run *run, const struct talus_probe *probe,
+                              const struct particle_block *block, size_t slot, enum cover cover)
+{
+    wide_mask mask = ~(wide_mask){0};
+    if (cover == COVER_ALL)
+        return mask;
+    for (uint32_t axis = 0; axis < run->grid.domain.axis_count; axis++) {
+        const wide_lanes position = row_position(run, block, axis, slot);
+        mask &= (position >= probe->within_min[axis]) & (position <= probe->within_max[axis]);
+    }
+    for (size_t lane = 0; block->body != NULL && probe->body_index >= 0 && lane < LANE_COUNT;
+         lane++)
+        mask[lane] &= -(int64_t)(block->body[slot + lane] == probe->body_index);
+    if (probe->on_boundary >= 0 && wide_lanes_any(mask))
+        mask &= row_on_boundary(run, probe, block, slot);
+    return mask;
+}
+
+/* Mass and first moments. Empty slots have no mass. */
+static void add_moments(const struct run *run, const struct talus_probe *probe,
+                        const struct particle_block *block, enum cover cover,
+                        struct probe_sums *sums)
+{
+    const real *mass = particle_values(&run->grid.layout, block, PARTICLE_MASS, 0);
+    wide_lanes total = {0}, first[3] = {{0}, {0}, {0}};
+    for (size_t slot = 0; slot < (size_t)block->row_count * LANE_COUNT; slot += LANE_COUNT) {
+        const wide_mask mask = row_selected(run, probe, block, slot, cover);
+        if (!wide_lanes_any(mask))
+            continue;
+        const wide_lanes m = wide_lanes_keep(mask, lanes_widen(lanes_load(mass + slot)));
+        total += m;
+        for (uint32_t axis = 0; axis < run->grid.domain.axis_count; axis++)
+            first[axis] += m * row_position(run, block, axis, slot);
+    }
+    sums->mass += wide_lanes_sum(total);
+    for (uint32_t axis = 0; axis < run->grid.domain.axis_count; axis++)
+        sums->first[axis] += wide_lanes_sum(first[axis]);
+}
+
+static double largest_volume(const struct run *run, const struct particle_block *block)
+{
+    const real *volume = particle_values(&run->grid.layout, block, PARTICLE_VOLUME, 0);
+    wide_lanes largest = {0};
+    for (size_t slot = 0; slot < (size_t)block->row_count * LANE_COUNT; slot += LANE_COUNT)
+        largest = wide_lanes_maximum(largest, lanes_widen(lanes_load(volume + slot)));
+    return wide_lanes_largest(largest);
 }
 
 static void add_reach(const struct run *run, const struct particle_block *block, size_t slot,
@@ -122,116 +199,41 @@ static void add_reach(const struct run *run, const struct particle_block *block,
     sums->high = reach + half > sums->high ? reach + half : sums->high;
 }
 
-static void add_particle(const struct run *run, const struct talus_probe *probe,
-                         const struct particle_block *block, size_t slot, const double position[3],
+/* Only those few particles are looked at one by one that reach beyond what has been found if they
+ * are as large as the largest of the block. */
+static void add_extremes(const struct run *run, const struct talus_probe *probe,
+                         const struct particle_block *block, enum cover cover,
                          struct probe_sums *sums)
 {
-    const struct particle_layout *layout = &run->grid.layout;
-    const double mass = particle_values(layout, block, PARTICLE_MASS, 0)[slot];
-    const double volume = particle_values(layout, block, PARTICLE_VOLUME, 0)[slot];
-    sums->count++;
-    sums->mass += mass;
-    for (size_t axis = 0; axis < 3; axis++)
-        sums->first[axis] += mass * position[axis];
-    if (wants_extremes(probe)) {
-        add_reach(run, block, slot, along_of(probe, position), sums);
-    }
-    if (probe->kind == TALUS_PROBE_INTEGRAL) {
-        double values[9] = {0};
-        field_values(run, block, slot, probe->field, values);
-        for (size_t component = 0; component < field_components(probe->field); component++)
-            sums->integral[component] += volume * values[component];
+    const double half = half_size(run, largest_volume(run, block)) * (1 + 1e-12);
+    for (size_t slot = 0; slot < (size_t)block->row_count * LANE_COUNT; slot += LANE_COUNT) {
+        const wide_lanes reach = row_along(run, block, probe->along, slot);
+        wide_mask beyond = (reach + half > sums->high) | (reach - half < sums->low);
+        if (wide_lanes_any(beyond))
+            beyond &= row_selected(run, probe, block, slot, cover);
+        for (size_t lane = 0; wide_lanes_any(beyond) && lane < LANE_COUNT; lane++) {
+            if (beyond[lane] != 0)
+                add_reach(run, block, slot + lane, reach[lane], sums);
+        }
     }
 }
 
-static void add_selected(const struct run *run, const struct talus_probe *probe,
-                         const struct particle_block *block, struct probe_sums *sums)
-{
-    for (size_t slot = 0; slot < (size_t)block->row_count * LANE_COUNT; slot++) {
-        double position[3];
-        run_slot_position(run, block, slot, position);
-        if (probe_selects(run, probe, block, slot, position))
-            add_particle(run, probe, block, slot, position, sums);
-    }
-}
-
-/* Where the cells of a block have their centres on an axis. */
-static wide_lanes cell_centres(const struct run *run, const struct particle_block *block,
-                               uint32_t axis)
-{
-    wide_lanes centre;
-    for (int32_t lane = 0; lane < LANE_COUNT; lane++)
-        centre[lane] =
-            domain_position(&run->grid.domain, axis, block->cell[axis] + (axis == 0 ? lane : 0), 0);
-    return centre;
-}
-
-/* Mass and first moments of a whole block. Empty slots have no mass. */
-static void add_moments(const struct run *run, const struct particle_block *block,
-                        struct probe_sums *sums)
-{
-    const struct particle_layout *layout = &run->grid.layout;
-    const size_t count = (size_t)block->row_count * LANE_COUNT;
-    const real *mass = particle_values(layout, block, PARTICLE_MASS, 0);
-    wide_lanes total = {0};
-    for (size_t slot = 0; slot < count; slot += LANE_COUNT)
-        total += lanes_widen(lanes_load(mass + slot));
-    sums->mass += wide_lanes_sum(total);
-    for (uint32_t axis = 0; axis < run->grid.domain.axis_count; axis++) {
-        const real *position = particle_values(layout, block, PARTICLE_POSITION, axis);
-        wide_lanes moment = {0};
-        for (size_t slot = 0; slot < count; slot += LANE_COUNT)
-            moment +=
-                lanes_widen(lanes_load(mass + slot)) * lanes_widen(lanes_load(position + slot));
-        sums->first[axis] += wide_lanes_sum(total * cell_centres(run, block, axis) +
-                                            run->grid.domain.cell[axis] * moment);
-    }
-    for (size_t lane = 0; lane < LANE_COUNT; lane++)
-        sums->count += block->lane_count[lane];
-}
-
-/* x . along of a row of a block; `origin` is that of the centres of its cells. */
-static wide_lanes reach_of_row(const struct run *run, const struct talus_probe *probe,
-                               const struct particle_block *block, wide_lanes origin, size_t slot)
-{
-    wide_lanes reach = origin;
-    for (uint32_t axis = 0; axis < run->grid.domain.axis_count; axis++) {
-        const double slope = probe->along[axis] * run->grid.domain.cell[axis];
-        if (slope != 0)
-            reach +=
-                slope *
-                lanes_widen(lanes_load(
-                    particle_values(&run->grid.layout, block, PARTICLE_POSITION, axis) + slot));
-    }
-    return reach;
-}
-
-static double largest_volume(const struct run *run, const struct particle_block *block)
+static void add_integral(const struct run *run, const struct talus_probe *probe,
+                         const struct particle_block *block, enum cover cover,
+                         struct probe_sums *sums)
 {
     const real *volume = particle_values(&run->grid.layout, block, PARTICLE_VOLUME, 0);
-    wide_lanes largest = {0};
-    for (size_t slot = 0; slot < (size_t)block->row_count * LANE_COUNT; slot += LANE_COUNT)
-        largest = wide_lanes_maximum(largest, lanes_widen(lanes_load(volume + slot)));
-    return wide_lanes_largest(largest);
-}
-
-/* Extremes of a whole block: only those few particles are looked at one by one that reach beyond
- * what has been found if they are as large as the largest. */
-static void add_extremes(const struct run *run, const struct talus_probe *probe,
-                         const struct particle_block *block, struct probe_sums *sums)
-{
-    const double half = half_size(run, largest_volume(run, block)) * (1 + 1e-12);
-    wide_lanes origin = {0};
-    for (uint32_t axis = 0; axis < run->grid.domain.axis_count; axis++)
-        origin += probe->along[axis] * cell_centres(run, block, axis);
-    for (size_t slot = 0; slot < (size_t)block->row_count * LANE_COUNT; slot += LANE_COUNT) {
-        const wide_lanes reach = reach_of_row(run, probe, block, origin, slot);
-        const wide_mask beyond = (reach + half > sums->high) | (reach - half < sums->low);
-        for (size_t lane = 0; wide_lanes_any(beyond) && lane < LANE_COUNT; lane++)
-            add_reach(run, block, slot + lane, reach[lane], sums);
+    const size_t components = field_components(probe->field);
+    for (size_t slot = 0; slot < (size_t)block->row_count * LANE_COUNT; slot++) {
+        const size_t lane = slot % LANE_COUNT;
+        if (block->id[slot] == PARTICLE_NONE ||
+            row_selected(run, probe, block, slot - lane, cover)[lane] == 0)
+            continue;
+        double values[9] = {0};
+        field_values(run, block, slot, probe->field, values);
+        for (size_t component = 0; component < components; component++)
+            sums->integral[component] += (double)volume[slot] * values[component];
     }
-    for (size_t lane = 0; lane < LANE_COUNT; lane++)
-        sums->count += block->lane_count[lane];
 }
 
 static void add_block(const struct run *run, const struct talus_probe *probe,
@@ -240,12 +242,12 @@ static void add_block(const struct run *run, const struct talus_probe *probe,
     const enum cover cover = cover_of(run, probe, block);
     if (cover == COVER_NONE)
         return;
-    if (cover == COVER_SOME || probe->kind == TALUS_PROBE_INTEGRAL)
-        add_selected(run, probe, block, sums);
+    if (probe->kind == TALUS_PROBE_INTEGRAL)
+        add_integral(run, probe, block, cover, sums);
     else if (wants_extremes(probe))
-        add_extremes(run, probe, block, sums);
+        add_extremes(run, probe, block, cover, sums);
     else
-        add_moments(run, block, sums);
+        add_moments(run, probe, block, cover, sums);
 }
 
 void probe_scan(const struct run *run, struct probe_sums *sums)
@@ -262,18 +264,19 @@ void probe_scan(const struct run *run, struct probe_sums *sums)
 
 double probe_scan_spread(const struct run *run, const struct talus_probe *probe, double mean)
 {
-    double spread = 0;
+    wide_lanes spread = {0};
     for (size_t index = 0; index < run->grid.block_count; index++) {
         const struct particle_block *block = &run->grid.blocks[index];
-        if (cover_of(run, probe, block) == COVER_NONE)
+        const enum cover cover = cover_of(run, probe, block);
+        if (cover == COVER_NONE)
             continue;
         const real *mass = particle_values(&run->grid.layout, block, PARTICLE_MASS, 0);
-        for (size_t slot = 0; slot < (size_t)block->row_count * LANE_COUNT; slot++) {
-            double position[3];
-            run_slot_position(run, block, slot, position);
-            if (probe_selects(run, probe, block, slot, position))
-                spread += (double)mass[slot] * fabs(along_of(probe, position) - mean);
+        for (size_t slot = 0; slot < (size_t)block->row_count * LANE_COUNT; slot += LANE_COUNT) {
+            const wide_mask mask = row_selected(run, probe, block, slot, cover);
+            const wide_lanes away = row_along(run, block, probe->along, slot) - mean;
+            spread += wide_lanes_keep(mask, lanes_widen(lanes_load(mass + slot))) *
+                      wide_lanes_maximum(away, -away);
         }
     }
-    return spread;
+    return wide_lanes_sum(spread);
 }

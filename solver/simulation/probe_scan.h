@@ -7,19 +7,19 @@
 
 #include "explicit/run.h"
 
-/* Sums over the particles that a probe selects. */
+/* Sums over the particles that a probe selects; what its kind does not need stays as it is where
+ * nothing is selected. */
 struct probe_sums {
-    double mass, first[3]; /* sum m [kg], sum m x [kg m]; for probes that need them */
-    double low, high;      /* [m] of x . along, with half a particle on each side; the same */
-    double spread;         /* sum m |x . along - mean| [kg m] */
-    double integral[9];    /* sum V f */
-    size_t count;          /* particles */
+    double mass, first[3]; /* sum m [kg], sum m x [kg m]; 0 */
+    double low, high;   /* [m] of x . along, with half a particle on each side; INFINITY, -INFINITY
+                         */
+    double integral[9]; /* sum V f */
 };
 
 /* Sums for every probe of the scene that looks at particles into sums[probe_count]. */
 void probe_scan(const struct run *run, struct probe_sums *sums);
 
-/* The spread of one probe about a mean of x . along. */
+/* sum m |x . along - mean| of one probe [kg m]. */
 double probe_scan_spread(const struct run *run, const struct talus_probe *probe, double mean);
 
 #endif

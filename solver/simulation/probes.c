@@ -129,10 +129,12 @@ void run_slot_position(const struct run *run, const struct particle_block *block
 static double geometry_value(const struct run *run, const struct talus_probe *probe,
                              const struct probe_sums *sums)
 {
-    if (sums->count == 0)
+    if (probe->measure == TALUS_MEASURE_PARTICLE && sums->high < sums->low)
         return 0;
     if (probe->measure == TALUS_MEASURE_PARTICLE)
         return probe->kind == TALUS_PROBE_EXTENT ? sums->high - sums->low : sums->high;
+    if (sums->mass == 0)
+        return 0;
     const double mean = (sums->first[0] * probe->along[0] + sums->first[1] * probe->along[1] +
                          sums->first[2] * probe->along[2]) /
                         sums->mass;
@@ -220,7 +222,7 @@ void probe_sample(struct talus_simulation *simulation, size_t probe_index, doubl
         choose(probe, sums->integral, field_components(probe->field), values);
     } else if (probe->kind == TALUS_PROBE_CENTRE_OF_MASS) {
         double centre[3] = {0};
-        for (size_t axis = 0; sums->count > 0 && axis < 3; axis++)
+        for (size_t axis = 0; sums->mass > 0 && axis < 3; axis++)
             centre[axis] = sums->first[axis] / sums->mass;
         choose(probe, centre, run->scene.axis_count, values);
     } else {

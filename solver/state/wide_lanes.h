@@ -29,6 +29,12 @@ static inline int wide_lanes_any(wide_mask mask)
     return any != 0;
 }
 
+/* mask ? yes : 0 */
+static inline wide_lanes wide_lanes_keep(wide_mask mask, wide_lanes yes)
+{
+    return (wide_lanes)(mask & (wide_mask)yes);
+}
+
 static inline double wide_lanes_largest(wide_lanes value)
 {
     double largest = value[0];
