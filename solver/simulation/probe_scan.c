@@ -9,7 +9,26 @@
 /* Rounding of positions, in cells. */
 #define COVER_MARGIN 1e-9
 
-enum cover { COVER_NONE, COVER_SOME, COVER_ALL };
+/* What must still be asked of the particles of a block, as bits. */
+enum question { ASK_PLACE = 1, ASK_BOUNDARY = 2, ASK_BODY = 4 };
+
+/* A block as probes read it. */
+struct view {
+    const struct run *run;
+    const struct particle_block *block;
+    size_t axis_count, slot_count;
+    wide_lanes centre[3]; /* of the cells, by lane [m] */
+    double width[3];      /* of a cell [m] */
+    const real *position[3], *mass, *volume;
+};
+
+/* What a probe looks at in a block. */
+struct look {
+    const struct talus_probe *probe;
+    const struct view *view;
+    unsigned questions;
+    struct probe_sums *sums;
+};
 
 static bool is_geometry(const struct talus_probe *probe)
 {
@@ -28,23 +47,39 @@ static bool wants_extremes(const struct talus_probe *probe)
     return is_geometry(probe) && probe->measure == TALUS_MEASURE_PARTICLE;
 }
 
-/* The part of the block's cells that a probe may look at. */
-static enum cover cover_within(const struct run *run, const struct talus_probe *probe,
-                               const struct particle_block *block)
+static void view_block(const struct run *run, const struct particle_block *block, struct view *view)
 {
+    const struct particle_layout *layout = &run->grid.layout;
     const struct domain *domain = &run->grid.domain;
-    enum cover cover = COVER_ALL;
+    view->run = run;
+    view->block = block;
+    view->axis_count = domain->axis_count;
+    view->slot_count = (size_t)block->row_count * LANE_COUNT;
+    view->mass = particle_values(layout, block, PARTICLE_MASS, 0);
+    view->volume = particle_values(layout, block, PARTICLE_VOLUME, 0);
     for (uint32_t axis = 0; axis < domain->axis_count; axis++) {
-        const int32_t cells = axis == 0 ? LANE_COUNT : 1;
-        const double margin = COVER_MARGIN * domain->cell[axis];
-        const double low = domain_node_position(domain, axis, block->cell[axis]) - margin;
-        const double high = domain_node_position(domain, axis, block->cell[axis] + cells) + margin;
-        if (high < probe->within_min[axis] || low > probe->within_max[axis])
-            return COVER_NONE;
-        if (low < probe->within_min[axis] || high > probe->within_max[axis])
-            cover = COVER_SOME;
+        const double first = domain_position(domain, axis, block->cell[axis], 0);
+        view->width[axis] = domain->cell[axis];
+        view->position[axis] = particle_values(layout, block, PARTICLE_POSITION, axis);
+        for (int32_t lane = 0; lane < LANE_COUNT; lane++)
+            view->centre[axis][lane] = first + (axis == 0 ? lane * domain->cell[0] : 0);
     }
-    return cover;
+}
+
+/* False if the block lies outside of what the probe looks at. */
+static bool meets_place(const struct view *view, const struct talus_probe *probe,
+                        unsigned *questions)
+{
+    for (size_t axis = 0; axis < view->axis_count; axis++) {
+        const double half = (0.5 + COVER_MARGIN) * view->width[axis];
+        const double low = view->centre[axis][0] - half;
+        const double high = view->centre[axis][LANE_COUNT - 1] + half;
+        if (high < probe->within_min[axis] || low > probe->within_max[axis])
+            return false;
+        if (low < probe->within_min[axis] || high > probe->within_max[axis])
+            *questions |= ASK_PLACE;
+    }
+    return true;
 }
 
 /* Distance of a probe's particles from the boundary that they lie on, at most [m]. */
@@ -54,33 +89,32 @@ static double reach_of_boundary(const struct run *run)
 }
 
 /* No point of a block is nearer to a boundary than its centre less half its diagonal. */
-static enum cover cover_boundary(const struct run *run, const struct talus_probe *probe,
-                                 const struct particle_block *block)
+static bool meets_boundary(const struct view *view, const struct talus_probe *probe)
 {
-    const struct domain *domain = &run->grid.domain;
     double centre[3] = {0, 0, 0}, square = 0;
-    for (uint32_t axis = 0; axis < domain->axis_count; axis++) {
-        const double half = 0.5 * (axis == 0 ? LANE_COUNT : 1) * domain->cell[axis];
-        centre[axis] = domain_node_position(domain, axis, block->cell[axis]) + half;
+    for (size_t axis = 0; axis < view->axis_count; axis++) {
+        const double low = view->centre[axis][0], high = view->centre[axis][LANE_COUNT - 1];
+        const double half = 0.5 * (high - low + view->width[axis]);
+        centre[axis] = 0.5 * (low + high);
         square += half * half;
     }
+    const struct run *run = view->run;
     const double distance = wall_set_distance(&run->walls, (size_t)probe->on_boundary, centre);
-    const bool away =
-        isfinite(distance) && distance > (reach_of_boundary(run) + sqrt(square)) * (1 + 1e-9);
-    return away ? COVER_NONE : COVER_SOME;
+    return !isfinite(distance) || distance <= (reach_of_boundary(run) + sqrt(square)) * (1 + 1e-9);
 }
 
-static enum cover cover_of(const struct run *run, const struct talus_probe *probe,
-                           const struct particle_block *block)
+static bool meets(const struct view *view, const struct talus_probe *probe, unsigned *questions)
 {
-    if (block->row_count == 0 || (block->body == NULL && probe->body_index > 0))
-        return COVER_NONE;
-    enum cover cover = cover_within(run, probe, block);
-    if (cover != COVER_NONE && probe->on_boundary >= 0)
-        cover = cover_boundary(run, probe, block);
-    if (cover == COVER_ALL && block->body != NULL && probe->body_index >= 0)
-        cover = COVER_SOME;
-    return cover;
+    const bool several = view->block->body != NULL;
+    *questions = 0;
+    if (!several && probe->body_index > 0)
+        return false;
+    if (several && probe->body_index >= 0)
+        *questions |= ASK_BODY;
+    if (probe->on_boundary >= 0)
+        *questions |= ASK_BOUNDARY;
+    return meets_place(view, probe, questions) &&
+           (probe->on_boundary < 0 || meets_boundary(view, probe));
 }
 
 /* Half the edge of a cube, square or line of that volume. */
@@ -90,41 +124,34 @@ static double half_size(const struct run *run, double volume)
     return 0.5 * (axes == 1 ? volume : axes == 2 ? sqrt(volume) : cbrt(volume));
 }
 
-/* Where the particles of a row are on an axis. */
-static wide_lanes row_position(const struct run *run, const struct particle_block *block,
-                               uint32_t axis, size_t slot)
+/* Where the particles of a row are on an axis [m]. */
+static wide_lanes row_position(const struct view *view, size_t axis, size_t slot)
 {
-    const struct domain *domain = &run->grid.domain;
-    const real *position = particle_values(&run->grid.layout, block, PARTICLE_POSITION, axis);
-    const double first = domain_position(domain, axis, block->cell[axis], 0);
-    const double step = axis == 0 ? domain->cell[axis] : 0;
-    wide_lanes centre;
-    for (int32_t lane = 0; lane < LANE_COUNT; lane++)
-        centre[lane] = first + lane * step;
-    return centre + domain->cell[axis] * lanes_widen(lanes_load(position + slot));
+    return view->centre[axis] +
+           view->width[axis] * lanes_widen(lanes_load(view->position[axis] + slot));
 }
 
-/* from . x of a row: along a probe, or along the normal of a plane. */
-static wide_lanes row_along(const struct run *run, const struct particle_block *block,
-                            const double direction[3], size_t slot)
+/* direction . x of a row: along a probe, or along the normal of a plane. */
+static wide_lanes row_along(const struct view *view, const double direction[3], size_t slot)
 {
     wide_lanes sum = {0};
-    for (uint32_t axis = 0; axis < run->grid.domain.axis_count; axis++) {
+    for (size_t axis = 0; axis < view->axis_count; axis++) {
         if (direction[axis] != 0)
-            sum += direction[axis] * row_position(run, block, axis, slot);
+            sum += direction[axis] * row_position(view, axis, slot);
     }
     return sum;
 }
 
 /* Which particles of a row lie on the boundary of a probe. */
-static wide_mask row_on_boundary(const struct run *run, const struct talus_probe *probe,
-                                 const struct particle_block *block, size_t slot)
+static wide_mask row_on_boundary(const struct view *view, const struct talus_probe *probe,
+                                 size_t slot)
 {
+    const struct run *run = view->run;
     const struct wall_shape *shape = &run->walls.shapes[probe->on_boundary];
     const double reach = reach_of_boundary(run);
     if (shape->kind == TALUS_BOUNDARY_PLANE) {
         const wide_lanes distance =
-            row_along(run, block, shape->normal, slot) -
+            row_along(view, shape->normal, slot) -
             (shape->normal[0] * shape->point[0] + shape->normal[1] * shape->point[1] +
              shape->normal[2] * shape->point[2]);
         return (distance <= reach) & (distance >= -reach);
@@ -132,7 +159,7 @@ static wide_mask row_on_boundary(const struct run *run, const struct talus_probe
     wide_mask mask;
     for (size_t lane = 0; lane < LANE_COUNT; lane++) {
         double position[3];
-        run_slot_position(run, block, slot + lane, position);
+        run_slot_position(run, view->block, slot + lane, position);
         mask[lane] =
             -(wall_set_distance(&run->walls, (size_t)probe->on_boundary, position) <= reach);
     }
@@ -140,124 +167,121 @@ static wide_mask row_on_boundary(const struct run *run, const struct talus_probe
 }
 
 /* Which slots of a row a probe selects; empty ones may be among them. */
-static wide_mask row_selected(const struct run *run, const struct talus_probe *probe,
-                              const struct particle_block *block, size_t slot, enum cover cover)
+static wide_mask row_selected(const struct look *look, size_t slot)
 {
+    const struct talus_probe *probe = look->probe;
+    const struct view *view = look->view;
     wide_mask mask = ~(wide_mask){0};
-    if (cover == COVER_ALL)
-        return mask;
-    for (uint32_t axis = 0; axis < run->grid.domain.axis_count; axis++) {
-        const wide_lanes position = row_position(run, block, axis, slot);
+    for (size_t axis = 0; (look->questions & ASK_PLACE) != 0 && axis < view->axis_count; axis++) {
+        const wide_lanes position = row_position(view, axis, slot);
         mask &= (position >= probe->within_min[axis]) & (position <= probe->within_max[axis]);
     }
-    for (size_t lane = 0; block->body != NULL && probe->body_index >= 0 && lane < LANE_COUNT;
-         lane++)
-        mask[lane] &= -(int64_t)(block->body[slot + lane] == probe->body_index);
-    if (probe->on_boundary >= 0 && wide_lanes_any(mask))
-        mask &= row_on_boundary(run, probe, block, slot);
+    for (size_t lane = 0; (look->questions & ASK_BODY) != 0 && lane < LANE_COUNT; lane++)
+        mask[lane] &= -(int64_t)(view->block->body[slot + lane] == probe->body_index);
+    if ((look->questions & ASK_BOUNDARY) != 0)
+        mask &= row_on_boundary(view, probe, slot);
     return mask;
 }
 
 /* Mass and first moments. Empty slots have no mass. */
-static void add_moments(const struct run *run, const struct talus_probe *probe,
-                        const struct particle_block *block, enum cover cover,
-                        struct probe_sums *sums)
+static void add_moments(const struct look *look)
 {
-    const real *mass = particle_values(&run->grid.layout, block, PARTICLE_MASS, 0);
+    const struct view *view = look->view;
     wide_lanes total = {0}, first[3] = {{0}, {0}, {0}};
-    for (size_t slot = 0; slot < (size_t)block->row_count * LANE_COUNT; slot += LANE_COUNT) {
-        const wide_mask mask = row_selected(run, probe, block, slot, cover);
-        if (!wide_lanes_any(mask))
-            continue;
-        const wide_lanes m = wide_lanes_keep(mask, lanes_widen(lanes_load(mass + slot)));
+    for (size_t slot = 0; slot < view->slot_count; slot += LANE_COUNT) {
+        const wide_mask mask = row_selected(look, slot);
+        const wide_lanes m = wide_lanes_keep(mask, lanes_widen(lanes_load(view->mass + slot)));
         total += m;
-        for (uint32_t axis = 0; axis < run->grid.domain.axis_count; axis++)
-            first[axis] += m * row_position(run, block, axis, slot);
+        for (size_t axis = 0; axis < view->axis_count; axis++)
+            first[axis] += m * row_position(view, axis, slot);
     }
-    sums->mass += wide_lanes_sum(total);
-    for (uint32_t axis = 0; axis < run->grid.domain.axis_count; axis++)
-        sums->first[axis] += wide_lanes_sum(first[axis]);
+    look->sums->mass += wide_lanes_sum(total);
+    for (size_t axis = 0; axis < view->axis_count; axis++)
+        look->sums->first[axis] += wide_lanes_sum(first[axis]);
 }
 
-static double largest_volume(const struct run *run, const struct particle_block *block)
+static double largest_volume(const struct view *view)
 {
-    const real *volume = particle_values(&run->grid.layout, block, PARTICLE_VOLUME, 0);
     wide_lanes largest = {0};
-    for (size_t slot = 0; slot < (size_t)block->row_count * LANE_COUNT; slot += LANE_COUNT)
-        largest = wide_lanes_maximum(largest, lanes_widen(lanes_load(volume + slot)));
+    for (size_t slot = 0; slot < view->slot_count; slot += LANE_COUNT)
+        largest = wide_lanes_maximum(largest, lanes_widen(lanes_load(view->volume + slot)));
     return wide_lanes_largest(largest);
 }
 
-static void add_reach(const struct run *run, const struct particle_block *block, size_t slot,
-                      double reach, struct probe_sums *sums)
+static void add_reach(const struct look *look, size_t slot, double reach)
 {
-    if (block->id[slot] == PARTICLE_NONE)
+    struct probe_sums *sums = look->sums;
+    if (look->view->block->id[slot] == PARTICLE_NONE)
         return;
-    const double half =
-        half_size(run, particle_values(&run->grid.layout, block, PARTICLE_VOLUME, 0)[slot]);
+    const double half = half_size(look->view->run, look->view->volume[slot]);
     sums->low = reach - half < sums->low ? reach - half : sums->low;
     sums->high = reach + half > sums->high ? reach + half : sums->high;
 }
 
 /* Only those few particles are looked at one by one that reach beyond what has been found if they
  * are as large as the largest of the block. */
-static void add_extremes(const struct run *run, const struct talus_probe *probe,
-                         const struct particle_block *block, enum cover cover,
-                         struct probe_sums *sums)
+static void add_extremes(const struct look *look)
 {
-    const double half = half_size(run, largest_volume(run, block)) * (1 + 1e-12);
-    for (size_t slot = 0; slot < (size_t)block->row_count * LANE_COUNT; slot += LANE_COUNT) {
-        const wide_lanes reach = row_along(run, block, probe->along, slot);
+    const struct view *view = look->view;
+    const struct probe_sums *sums = look->sums;
+    const double half = half_size(view->run, largest_volume(view)) * (1 + 1e-12);
+    for (size_t slot = 0; slot < view->slot_count; slot += LANE_COUNT) {
+        const wide_lanes reach = row_along(view, look->probe->along, slot);
         wide_mask beyond = (reach + half > sums->high) | (reach - half < sums->low);
-        if (wide_lanes_any(beyond))
-            beyond &= row_selected(run, probe, block, slot, cover);
-        for (size_t lane = 0; wide_lanes_any(beyond) && lane < LANE_COUNT; lane++) {
+        if (!wide_lanes_any(beyond))
+            continue;
+        beyond &= row_selected(look, slot);
+        for (size_t lane = 0; lane < LANE_COUNT; lane++) {
             if (beyond[lane] != 0)
-                add_reach(run, block, slot + lane, reach[lane], sums);
+                add_reach(look, slot + lane, reach[lane]);
         }
     }
 }
 
-static void add_integral(const struct run *run, const struct talus_probe *probe,
-                         const struct particle_block *block, enum cover cover,
-                         struct probe_sums *sums)
+static void add_integral(const struct look *look)
 {
-    const real *volume = particle_values(&run->grid.layout, block, PARTICLE_VOLUME, 0);
-    const size_t components = field_components(probe->field);
-    for (size_t slot = 0; slot < (size_t)block->row_count * LANE_COUNT; slot++) {
+    const struct view *view = look->view;
+    const size_t components = field_components(look->probe->field);
+    for (size_t slot = 0; slot < view->slot_count; slot++) {
         const size_t lane = slot % LANE_COUNT;
-        if (block->id[slot] == PARTICLE_NONE ||
-            row_selected(run, probe, block, slot - lane, cover)[lane] == 0)
+        if (view->block->id[slot] == PARTICLE_NONE || row_selected(look, slot - lane)[lane] == 0)
             continue;
         double values[9] = {0};
-        field_values(run, block, slot, probe->field, values);
+        field_values(view->run, view->block, slot, look->probe->field, values);
         for (size_t component = 0; component < components; component++)
-            sums->integral[component] += (double)volume[slot] * values[component];
+            look->sums->integral[component] += (double)view->volume[slot] * values[component];
     }
 }
 
-static void add_block(const struct run *run, const struct talus_probe *probe,
-                      const struct particle_block *block, struct probe_sums *sums)
+static void add_block(const struct view *view, const struct talus_probe *probe,
+                      struct probe_sums *sums)
 {
-    const enum cover cover = cover_of(run, probe, block);
-    if (cover == COVER_NONE)
+    struct look look = {.probe = probe, .view = view, .sums = sums};
+    if (!meets(view, probe, &look.questions))
         return;
     if (probe->kind == TALUS_PROBE_INTEGRAL)
-        add_integral(run, probe, block, cover, sums);
+        add_integral(&look);
     else if (wants_extremes(probe))
-        add_extremes(run, probe, block, cover, sums);
+        add_extremes(&look);
     else
-        add_moments(run, probe, block, cover, sums);
+        add_moments(&look);
 }
 
 void probe_scan(const struct run *run, struct probe_sums *sums)
 {
-    for (size_t probe = 0; probe < run->scene.probe_count; probe++)
+    bool any = false;
+    for (size_t probe = 0; probe < run->scene.probe_count; probe++) {
         sums[probe] = (struct probe_sums){.low = INFINITY, .high = -INFINITY};
-    for (size_t index = 0; index < run->grid.block_count; index++) {
+        any = any || wants_particles(&run->scene.probes[probe]);
+    }
+    for (size_t index = 0; any && index < run->grid.block_count; index++) {
+        struct view view;
+        if (run->grid.blocks[index].row_count == 0)
+            continue;
+        view_block(run, &run->grid.blocks[index], &view);
         for (size_t probe = 0; probe < run->scene.probe_count; probe++) {
             if (wants_particles(&run->scene.probes[probe]))
-                add_block(run, &run->scene.probes[probe], &run->grid.blocks[index], &sums[probe]);
+                add_block(&view, &run->scene.probes[probe], &sums[probe]);
         }
     }
 }
@@ -266,16 +290,18 @@ double probe_scan_spread(const struct run *run, const struct talus_probe *probe,
 {
     wide_lanes spread = {0};
     for (size_t index = 0; index < run->grid.block_count; index++) {
-        const struct particle_block *block = &run->grid.blocks[index];
-        const enum cover cover = cover_of(run, probe, block);
-        if (cover == COVER_NONE)
+        struct view view;
+        struct look look = {.probe = probe, .view = &view};
+        if (run->grid.blocks[index].row_count == 0)
             continue;
-        const real *mass = particle_values(&run->grid.layout, block, PARTICLE_MASS, 0);
-        for (size_t slot = 0; slot < (size_t)block->row_count * LANE_COUNT; slot += LANE_COUNT) {
-            const wide_mask mask = row_selected(run, probe, block, slot, cover);
-            const wide_lanes away = row_along(run, block, probe->along, slot) - mean;
-            spread += wide_lanes_keep(mask, lanes_widen(lanes_load(mass + slot))) *
-                      wide_lanes_maximum(away, -away);
+        view_block(run, &run->grid.blocks[index], &view);
+        if (!meets(&view, probe, &look.questions))
+            continue;
+        for (size_t slot = 0; slot < view.slot_count; slot += LANE_COUNT) {
+            const wide_lanes away = row_along(&view, probe->along, slot) - mean;
+            const wide_lanes m = lanes_widen(lanes_load(view.mass + slot));
+            spread +=
+                wide_lanes_keep(row_selected(&look, slot), m) * wide_lanes_maximum(away, -away);
         }
     }
     return wide_lanes_sum(spread);
