@@ -51,6 +51,11 @@ struct talus_simulation_state {
 void talus_simulation_get_state(const struct talus_simulation *simulation,
                                 struct talus_simulation_state *state);
 
+/* The same without what must be counted over the grid (active_cell_count and memory_bytes are 0):
+ * for every step. */
+void talus_simulation_get_clock(struct talus_simulation *simulation,
+                                struct talus_simulation_state *state);
+
 /* Moves the end of the run (steering); not before the present time. */
 TALUS_MUST_CHECK enum talus_status
 talus_simulation_set_duration(struct talus_simulation *simulation, double duration,

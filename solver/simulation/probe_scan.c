@@ -17,8 +17,9 @@ struct view {
     const struct run *run;
     const struct particle_block *block;
     size_t axis_count, slot_count;
-    wide_lanes centre[3]; /* of the cells, by lane [m] */
-    double width[3];      /* of a cell [m] */
+    double boundary_reach; /* distance of particles that are "on" a boundary, at most [m] */
+    wide_lanes centre[3];  /* of the cells, by lane [m] */
+    double width[3];       /* of a cell [m] */
     const real *position[3], *mass, *volume;
 };
 
@@ -27,6 +28,8 @@ struct look {
     const struct talus_probe *probe;
     const struct view *view;
     unsigned questions;
+    const struct wall_shape *plane; /* that its particles lie on; NULL: another kind of boundary */
+    double plane_offset;            /* normal . point [m] */
     struct probe_sums *sums;
 };
 
@@ -54,6 +57,7 @@ static void view_block(const struct run *run, const struct particle_block *block
     view->run = run;
     view->block = block;
     view->axis_count = domain->axis_count;
+    view->boundary_reach = 0.5 * domain_smallest_cell(domain) * (1 + 1e-9);
     view->slot_count = (size_t)block->row_count * LANE_COUNT;
     view->mass = particle_values(layout, block, PARTICLE_MASS, 0);
     view->volume = particle_values(layout, block, PARTICLE_VOLUME, 0);
@@ -82,12 +86,6 @@ static bool meets_place(const struct view *view, const struct talus_probe *probe
     return true;
 }
 
-/* Distance of a probe's particles from the boundary that they lie on, at most [m]. */
-static double reach_of_boundary(const struct run *run)
-{
-    return 0.5 * domain_smallest_cell(&run->grid.domain) * (1 + 1e-9);
-}
-
 /* No point of a block is nearer to a boundary than its centre less half its diagonal. */
 static bool meets_boundary(const struct view *view, const struct talus_probe *probe)
 {
@@ -100,21 +98,29 @@ static bool meets_boundary(const struct view *view, const struct talus_probe *pr
     }
     const struct run *run = view->run;
     const double distance = wall_set_distance(&run->walls, (size_t)probe->on_boundary, centre);
-    return !isfinite(distance) || distance <= (reach_of_boundary(run) + sqrt(square)) * (1 + 1e-9);
+    return !isfinite(distance) || distance <= (view->boundary_reach + sqrt(square)) * (1 + 1e-9);
 }
 
-static bool meets(const struct view *view, const struct talus_probe *probe, unsigned *questions)
+/* What a probe must ask of the particles of a block; false if it need not look. */
+static bool look_at(const struct view *view, const struct talus_probe *probe, struct look *look)
 {
     const bool several = view->block->body != NULL;
-    *questions = 0;
+    *look = (struct look){.probe = probe, .view = view};
     if (!several && probe->body_index > 0)
         return false;
     if (several && probe->body_index >= 0)
-        *questions |= ASK_BODY;
-    if (probe->on_boundary >= 0)
-        *questions |= ASK_BOUNDARY;
-    return meets_place(view, probe, questions) &&
-           (probe->on_boundary < 0 || meets_boundary(view, probe));
+        look->questions |= ASK_BODY;
+    if (!meets_place(view, probe, &look->questions))
+        return false;
+    if (probe->on_boundary < 0)
+        return true;
+    const struct wall_shape *shape = &view->run->walls.shapes[probe->on_boundary];
+    look->questions |= ASK_BOUNDARY;
+    if (shape->kind == TALUS_BOUNDARY_PLANE)
+        look->plane = shape;
+    look->plane_offset = shape->normal[0] * shape->point[0] + shape->normal[1] * shape->point[1] +
+                         shape->normal[2] * shape->point[2];
+    return meets_boundary(view, probe);
 }
 
 /* Half the edge of a cube, square or line of that volume. */
@@ -143,32 +149,29 @@ static wide_lanes row_along(const struct view *view, const double direction[3], 
 }
 
 /* Which particles of a row lie on the boundary of a probe. */
-static wide_mask row_on_boundary(const struct view *view, const struct talus_probe *probe,
-                                 size_t slot)
+static wide_mask row_on_boundary(const struct look *look, size_t slot)
 {
-    const struct run *run = view->run;
-    const struct wall_shape *shape = &run->walls.shapes[probe->on_boundary];
-    const double reach = reach_of_boundary(run);
-    if (shape->kind == TALUS_BOUNDARY_PLANE) {
-        const wide_lanes distance =
-            row_along(view, shape->normal, slot) -
-            (shape->normal[0] * shape->point[0] + shape->normal[1] * shape->point[1] +
-             shape->normal[2] * shape->point[2]);
+    const struct view *view = look->view;
+    const double reach = view->boundary_reach;
+    if (look->plane != NULL) {
+        const wide_lanes distance = row_along(view, look->plane->normal, slot) - look->plane_offset;
         return (distance <= reach) & (distance >= -reach);
     }
     wide_mask mask;
     for (size_t lane = 0; lane < LANE_COUNT; lane++) {
         double position[3];
-        run_slot_position(run, view->block, slot + lane, position);
-        mask[lane] =
-            -(wall_set_distance(&run->walls, (size_t)probe->on_boundary, position) <= reach);
+        run_slot_position(view->run, view->block, slot + lane, position);
+        mask[lane] = -(wall_set_distance(&view->run->walls, (size_t)look->probe->on_boundary,
+                                         position) <= reach);
     }
     return mask;
 }
 
 /* Which slots of a row a probe selects; empty ones may be among them. */
-static wide_mask row_selected(const struct look *look, size_t slot)
+static inline wide_mask row_selected(const struct look *look, size_t slot)
 {
+    if (look->questions == 0)
+        return ~(wide_mask){0};
     const struct talus_probe *probe = look->probe;
     const struct view *view = look->view;
     wide_mask mask = ~(wide_mask){0};
@@ -179,7 +182,7 @@ static wide_mask row_selected(const struct look *look, size_t slot)
     for (size_t lane = 0; (look->questions & ASK_BODY) != 0 && lane < LANE_COUNT; lane++)
         mask[lane] &= -(int64_t)(view->block->body[slot + lane] == probe->body_index);
     if ((look->questions & ASK_BOUNDARY) != 0)
-        mask &= row_on_boundary(view, probe, slot);
+        mask &= row_on_boundary(look, slot);
     return mask;
 }
 
@@ -218,6 +221,21 @@ static void add_reach(const struct look *look, size_t slot, double reach)
     sums->high = reach + half > sums->high ? reach + half : sums->high;
 }
 
+/* True if a particle anywhere in the block would reach beyond what has been found. */
+static bool block_reaches(const struct look *look, double half)
+{
+    const struct view *view = look->view;
+    double low = -half, high = half;
+    for (size_t axis = 0; axis < view->axis_count; axis++) {
+        const double edge = (0.5 + COVER_MARGIN) * view->width[axis];
+        const double one = look->probe->along[axis] * (view->centre[axis][0] - edge);
+        const double other = look->probe->along[axis] * (view->centre[axis][LANE_COUNT - 1] + edge);
+        low += one < other ? one : other;
+        high += one < other ? other : one;
+    }
+    return high > look->sums->high || low < look->sums->low;
+}
+
 /* Only those few particles are looked at one by one that reach beyond what has been found if they
  * are as large as the largest of the block. */
 static void add_extremes(const struct look *look)
@@ -225,6 +243,8 @@ static void add_extremes(const struct look *look)
     const struct view *view = look->view;
     const struct probe_sums *sums = look->sums;
     const double half = half_size(view->run, largest_volume(view)) * (1 + 1e-12);
+    if (!block_reaches(look, half))
+        return;
     for (size_t slot = 0; slot < view->slot_count; slot += LANE_COUNT) {
         const wide_lanes reach = row_along(view, look->probe->along, slot);
         wide_mask beyond = (reach + half > sums->high) | (reach - half < sums->low);
@@ -256,9 +276,10 @@ static void add_integral(const struct look *look)
 static void add_block(const struct view *view, const struct talus_probe *probe,
                       struct probe_sums *sums)
 {
-    struct look look = {.probe = probe, .view = view, .sums = sums};
-    if (!meets(view, probe, &look.questions))
+    struct look look;
+    if (!look_at(view, probe, &look))
         return;
+    look.sums = sums;
     if (probe->kind == TALUS_PROBE_INTEGRAL)
         add_integral(&look);
     else if (wants_extremes(probe))
@@ -271,7 +292,8 @@ void probe_scan(const struct run *run, struct probe_sums *sums)
 {
     bool any = false;
     for (size_t probe = 0; probe < run->scene.probe_count; probe++) {
-        sums[probe] = (struct probe_sums){.low = INFINITY, .high = -INFINITY};
+        const bool extent = run->scene.probes[probe].kind == TALUS_PROBE_EXTENT;
+        sums[probe] = (struct probe_sums){.low = extent ? INFINITY : -INFINITY, .high = -INFINITY};
         any = any || wants_particles(&run->scene.probes[probe]);
     }
     for (size_t index = 0; any && index < run->grid.block_count; index++) {
@@ -291,11 +313,11 @@ double probe_scan_spread(const struct run *run, const struct talus_probe *probe,
     wide_lanes spread = {0};
     for (size_t index = 0; index < run->grid.block_count; index++) {
         struct view view;
-        struct look look = {.probe = probe, .view = &view};
+        struct look look;
         if (run->grid.blocks[index].row_count == 0)
             continue;
         view_block(run, &run->grid.blocks[index], &view);
-        if (!meets(&view, probe, &look.questions))
+        if (!look_at(&view, probe, &look))
             continue;
         for (size_t slot = 0; slot < view.slot_count; slot += LANE_COUNT) {
             const wide_lanes away = row_along(&view, probe->along, slot) - mean;

@@ -11,8 +11,8 @@
  * nothing is selected. */
 struct probe_sums {
     double mass, first[3]; /* sum m [kg], sum m x [kg m]; 0 */
-    double low, high;   /* [m] of x . along, with half a particle on each side; INFINITY, -INFINITY
-                         */
+    /* [m] of x . along, with half a particle on each side; INFINITY, -INFINITY. low: extent only */
+    double low, high;
     double integral[9]; /* sum V f */
 };
 

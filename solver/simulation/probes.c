@@ -129,7 +129,7 @@ void run_slot_position(const struct run *run, const struct particle_block *block
 static double geometry_value(const struct run *run, const struct talus_probe *probe,
                              const struct probe_sums *sums)
 {
-    if (probe->measure == TALUS_MEASURE_PARTICLE && sums->high < sums->low)
+    if (probe->measure == TALUS_MEASURE_PARTICLE && isinf(sums->high))
         return 0;
     if (probe->measure == TALUS_MEASURE_PARTICLE)
         return probe->kind == TALUS_PROBE_EXTENT ? sums->high - sums->low : sums->high;

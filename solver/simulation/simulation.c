@@ -192,23 +192,42 @@ void talus_simulation_expect_sample(struct talus_simulation *simulation)
     simulation->run.sample_expected = true;
 }
 
-void talus_simulation_get_state(const struct talus_simulation *simulation,
-                                struct talus_simulation_state *state)
+static struct talus_simulation_state clock_of(const struct run *run)
 {
-    const struct run *run = &simulation->run;
-    *state = (struct talus_simulation_state){
+    return (struct talus_simulation_state){
         .time = run->time,
         .duration = run->scene.duration,
         .step = run->step,
         .time_step = run->time_step,
         .critical_time_step = run->critical_time_step,
-        .particle_count = sparse_grid_particle_count(&run->grid),
         .initial_particle_count = run->initial_particle_count,
-        .active_cell_count = sparse_grid_active_cells(&run->grid),
-        .memory_bytes = sparse_grid_memory(&run->grid),
         .eliminated_mass = run->audit.eliminated_mass,
         .finished = run->time_step <= 0,
     };
+}
+
+void talus_simulation_get_clock(struct talus_simulation *simulation,
+                                struct talus_simulation_state *state)
+{
+    const struct run *run = &simulation->run;
+    *state = clock_of(run);
+    /* Particles only ever go, and take mass along. */
+    if (simulation->particle_count == 0 ||
+        simulation->counted_without != run->audit.eliminated_mass) {
+        simulation->particle_count = sparse_grid_particle_count(&run->grid);
+        simulation->counted_without = run->audit.eliminated_mass;
+    }
+    state->particle_count = simulation->particle_count;
+}
+
+void talus_simulation_get_state(const struct talus_simulation *simulation,
+                                struct talus_simulation_state *state)
+{
+    const struct run *run = &simulation->run;
+    *state = clock_of(run);
+    state->particle_count = sparse_grid_particle_count(&run->grid);
+    state->active_cell_count = sparse_grid_active_cells(&run->grid);
+    state->memory_bytes = sparse_grid_memory(&run->grid);
 }
 
 enum talus_status talus_simulation_set_duration(struct talus_simulation *simulation,

@@ -15,6 +15,8 @@ struct probe_place {
 
 struct talus_simulation {
     struct run run;
+    size_t particle_count;        /* alive, as counted ... */
+    double counted_without;       /* ... when so much mass had been eliminated [kg] */
     struct talus_column *columns; /* owned */
     size_t column_count;
     struct talus_metric *metrics; /* owned */

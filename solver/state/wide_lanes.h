@@ -23,10 +23,14 @@ static inline wide_lanes wide_lanes_maximum(wide_lanes a, wide_lanes b)
 /* True if a lane is set. */
 static inline int wide_lanes_any(wide_mask mask)
 {
+#if defined(__AVX__) && !defined(TALUS_SINGLE)
+    return __builtin_ia32_movmskpd256((wide_lanes)mask) != 0;
+#else
     int64_t any = 0;
     for (int lane = 0; lane < LANE_COUNT; lane++)
         any |= mask[lane];
     return any != 0;
+#endif
 }
 
 /* mask ? yes : 0 */

@@ -19,7 +19,7 @@ enum talus_status job_take_sample(struct job_run *run, struct talus_error *error
 {
     struct talus_simulation_state state;
     double *row = NULL;
-    talus_simulation_get_state(run->simulation, &state);
+    talus_simulation_get_clock(run->simulation, &state);
     if (run->counters.sampled_step == state.step)
         return TALUS_OK;
     enum talus_status status = history_add(&run->history, &row, error);
@@ -77,7 +77,7 @@ enum talus_status job_loop(struct job_run *run, struct talus_error *error)
 {
     struct talus_simulation_state state;
     enum talus_status status = TALUS_OK;
-    talus_simulation_get_state(run->simulation, &state);
+    talus_simulation_get_clock(run->simulation, &state);
     while (!state.finished) {
         double begin = job_now();
         double stepped = (double)state.particle_count;
@@ -88,7 +88,7 @@ enum talus_status job_loop(struct job_run *run, struct talus_error *error)
         if (status != TALUS_OK)
             return status;
         run->counters.particle_steps += stepped;
-        talus_simulation_get_state(run->simulation, &state);
+        talus_simulation_get_clock(run->simulation, &state);
         /* At the end every time is "nearest"; the last row and frame are taken below. */
         if (state.finished)
             break;
@@ -98,7 +98,7 @@ enum talus_status job_loop(struct job_run *run, struct talus_error *error)
         if (status != TALUS_OK)
             return status;
         /* Steering may have moved the end to the present time. */
-        talus_simulation_get_state(run->simulation, &state);
+        talus_simulation_get_clock(run->simulation, &state);
     }
     status = job_take_sample(run, error);
     if (status == TALUS_OK)

@@ -365,6 +365,12 @@ enum talus_status talus_simulation_restore(const struct talus_scene *scene,
     return TALUS_OK;
 }
 
+void talus_simulation_get_clock(struct talus_simulation *simulation,
+                                struct talus_simulation_state *state)
+{
+    talus_simulation_get_state(simulation, state);
+}
+
 void talus_simulation_expect_sample(struct talus_simulation *simulation)
 {
     (void)simulation;
