@@ -110,16 +110,19 @@ TALUS_INLINE struct sym3 mat3_symmetric(struct mat3 a)
                          0.5 * (a.m[0][2] + a.m[2][0])};
 }
 
+/* Component (i, j) of a b^T. */
+TALUS_INLINE real mat3_row_product(struct mat3 a, int i, struct mat3 b, int j)
+{
+    return a.m[i][0] * b.m[j][0] + a.m[i][1] * b.m[j][1] + a.m[i][2] * b.m[j][2];
+}
+
 /* r a r^T for a symmetric a: turns it by the rotation r, or pushes it forward by r. */
 TALUS_INLINE struct sym3 sym3_push_forward(struct mat3 r, struct sym3 a)
 {
-    struct mat3 full = mat3_multiply(r, mat3_from_sym3(a));
-    struct mat3 transposed;
-    for (int i = 0; i < 3; i++) {
-        for (int j = 0; j < 3; j++)
-            transposed.m[i][j] = r.m[j][i];
-    }
-    return mat3_symmetric(mat3_multiply(full, transposed));
+    struct mat3 half = mat3_multiply(r, mat3_from_sym3(a));
+    return (struct sym3){mat3_row_product(half, 0, r, 0), mat3_row_product(half, 1, r, 1),
+                         mat3_row_product(half, 2, r, 2), mat3_row_product(half, 0, r, 1),
+                         mat3_row_product(half, 1, r, 2), mat3_row_product(half, 0, r, 2)};
 }
 
 #endif
