@@ -12,7 +12,8 @@
 /* Newton's method with a numerical tangent. The source iterates with the elastic operator (Mast
  * 2013, eq. 3.130), which needs ever more iterations near the peak. */
 enum { ITERATION_MAX = 60, HALVING_MAX = 12 };
-static const double stress_tolerance = 1e-11; /* of the stress scale */
+/* Of the stress scale; what the numbers can hold if that is less. */
+static const double stress_tolerance = 16 * REAL_EPSILON > 1e-11 ? 16 * REAL_EPSILON : 1e-11;
 
 struct control { /* of one step */
     size_t unknown_count;
@@ -92,7 +93,8 @@ static double control_offset(const struct point *point, const struct control *co
         increment = fmax(increment, fabs(control->increment[component]));
         elastic = fmax(elastic, fabs(point->state.elastic[component]));
     }
-    return fmax(1e-6 * increment, fmax(1e-8 * elastic, 1e-12));
+    const double share = 0.5 * sqrt(REAL_EPSILON);
+    return fmax(fmax(1e-6, share) * increment, fmax(fmax(1e-8, share) * elastic, 1e-12));
 }
 
 /* Takes as much of the change as does not make the error grow. */
@@ -154,6 +156,15 @@ struct run { /* a path under way */
     void *context;
 };
 
+static double deviator_norm(const double stress[SYM3_COMPONENTS], double mean)
+{
+    double sum = 0.0;
+    for (int component = 0; component < 3; component++)
+        sum += (stress[component] - mean) * (stress[component] - mean) +
+               2.0 * stress[component + 3] * stress[component + 3];
+    return sqrt(sum);
+}
+
 static void run_emit(struct run *run, int iterations)
 {
     const struct point_state *state = &run->point.state;
@@ -169,9 +180,7 @@ static void run_emit(struct run *run, int iterations)
     };
     memcpy(step.strain, state->strain, sizeof step.strain);
     memcpy(step.stress, state->stress, sizeof step.stress);
-    struct sym3 stress = {step.stress[0], step.stress[1], step.stress[2],
-                          step.stress[3], step.stress[4], step.stress[5]};
-    step.q = sqrt(1.5) * sym3_norm(sym3_deviator(stress));
+    step.q = sqrt(1.5) * deviator_norm(step.stress, step.p);
     run->emit(run->context, &step);
     run->step++;
 }
@@ -228,7 +237,7 @@ static enum talus_status run_controlled(struct run *run,
 /* a b^-1; false if det b is not positive. */
 static bool gradient_ratio(struct mat3 a, struct mat3 b, struct mat3 *ratio)
 {
-    double determinant = mat3_determinant(b);
+    real determinant = mat3_determinant(b);
     struct mat3 inverse;
     for (int i = 0; i < 3; i++) {
         for (int j = 0; j < 3; j++) {
@@ -247,9 +256,9 @@ static bool gradient_ratio(struct mat3 a, struct mat3 b, struct mat3 *ratio)
 static void set_step_gradient(struct point_trial *trial, struct mat3 step)
 {
     const struct sym3 one = {1, 1, 1, 0, 0, 0};
-    struct sym3 e = sym3_scale(0.5, sym3_add_scaled(sym3_push_forward(step, one), -1.0, one));
-    double values[SYM3_COMPONENTS] = {e.xx, e.yy, e.zz, e.xy, e.yz, e.xz};
-    double *arrays[SYM3_COMPONENTS];
+    struct sym3 e = sym3_scale((real)0.5, sym3_add_scaled(sym3_push_forward(step, one), -1, one));
+    real values[SYM3_COMPONENTS] = {e.xx, e.yy, e.zz, e.xy, e.yz, e.xz};
+    real *arrays[SYM3_COMPONENTS];
     for (int component = 0; component < SYM3_COMPONENTS; component++)
         arrays[component] = &values[component];
     (void)log_strain_batch(1, SYM3_COMPONENTS, arrays, arrays); /* f is regular */
@@ -272,7 +281,8 @@ static enum talus_status run_gradient(struct run *run, const struct material_poi
         struct mat3 increment;
         for (int entry = 0; entry < 9; entry++) {
             double begin = start.m[entry / 3][entry % 3];
-            gradient.m[entry / 3][entry % 3] = begin + share * (segment->gradient[entry] - begin);
+            gradient.m[entry / 3][entry % 3] =
+                (real)(begin + share * (segment->gradient[entry] - begin));
         }
         bool valid = gradient_ratio(gradient, point->state.gradient, &increment);
         if (valid) {

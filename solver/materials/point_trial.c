@@ -51,23 +51,27 @@ void point_release(struct point *point)
 }
 
 /* The six arrays of a tensor over the lanes. */
-static void point_arrays(double values[SYM3_COMPONENTS][POINT_LANES],
-                         double *arrays[SYM3_COMPONENTS])
+static void point_arrays(real values[SYM3_COMPONENTS][POINT_LANES], real *arrays[SYM3_COMPONENTS])
 {
     for (int component = 0; component < SYM3_COMPONENTS; component++)
         arrays[component] = values[component];
 }
 
-static struct sym3 lane_tensor(double values[SYM3_COMPONENTS][POINT_LANES], int lane)
+static struct sym3 lane_tensor(real values[SYM3_COMPONENTS][POINT_LANES], int lane)
 {
     return (struct sym3){values[0][lane], values[1][lane], values[2][lane],
                          values[3][lane], values[4][lane], values[5][lane]};
 }
 
-static void lane_set(double values[SYM3_COMPONENTS][POINT_LANES], int lane, struct sym3 tensor)
+static struct sym3 sym3_from(const double a[SYM3_COMPONENTS])
 {
-    const double components[SYM3_COMPONENTS] = {tensor.xx, tensor.yy, tensor.zz,
-                                                tensor.xy, tensor.yz, tensor.xz};
+    return (struct sym3){(real)a[0], (real)a[1], (real)a[2], (real)a[3], (real)a[4], (real)a[5]};
+}
+
+static void lane_set(real values[SYM3_COMPONENTS][POINT_LANES], int lane, struct sym3 tensor)
+{
+    const real components[SYM3_COMPONENTS] = {tensor.xx, tensor.yy, tensor.zz,
+                                              tensor.xy, tensor.yz, tensor.xz};
     for (int component = 0; component < SYM3_COMPONENTS; component++)
         values[component][lane] = components[component];
 }
@@ -75,11 +79,11 @@ static void lane_set(double values[SYM3_COMPONENTS][POINT_LANES], int lane, stru
 void point_trial_stretch(struct point *point)
 {
     struct point_trial *trial = &point->trial;
-    double stretch[SYM3_COMPONENTS][POINT_LANES];
-    double *arrays[SYM3_COMPONENTS];
+    real stretch[SYM3_COMPONENTS][POINT_LANES];
+    real *arrays[SYM3_COMPONENTS];
     for (int component = 0; component < SYM3_COMPONENTS; component++) {
         for (int lane = 0; lane < POINT_LANES; lane++)
-            stretch[component][lane] = 0.5 * trial->strain[component][lane];
+            stretch[component][lane] = (real)(0.5 * trial->strain[component][lane]);
     }
     point_arrays(stretch, arrays);
     exp_strain_batch(POINT_LANES, SYM3_COMPONENTS, arrays, arrays);
@@ -94,8 +98,8 @@ static bool trial_elastic_finite(struct point *point)
 {
     struct point_trial *trial = &point->trial;
     const double *kept = point->state.elastic;
-    double *arrays[SYM3_COMPONENTS];
-    struct sym3 hencky = {kept[0], kept[1], kept[2], kept[3], kept[4], kept[5]};
+    real *arrays[SYM3_COMPONENTS];
+    struct sym3 hencky = sym3_from(kept);
     point_arrays(trial->elastic, arrays);
     for (int lane = 0; lane < POINT_LANES; lane++)
         lane_set(trial->elastic, lane, hencky);
@@ -114,8 +118,8 @@ static bool trial_elastic_finite(struct point *point)
 /* Rotation part of f as the spin whose Cayley transform it is, over a step of `time_step`. */
 static void trial_spin(struct point_trial *trial, double time_step)
 {
-    double square[SYM3_COMPONENTS][POINT_LANES];
-    double *arrays[SYM3_COMPONENTS];
+    real square[SYM3_COMPONENTS][POINT_LANES];
+    real *arrays[SYM3_COMPONENTS];
     const struct sym3 one = {1, 1, 1, 0, 0, 0};
     point_arrays(square, arrays);
     for (int lane = 0; lane < POINT_LANES; lane++)
@@ -134,7 +138,7 @@ static void trial_spin(struct point_trial *trial, double time_step)
     for (int lane = 0; lane < POINT_LANES; lane++) {
         struct sym3 inverse = sym3_add_diagonal(sym3_scale(2.0, lane_tensor(square, lane)), 1.0);
         struct mat3 turn = mat3_multiply(mat3_from_sym3(inverse), trial->step[lane]);
-        double scale = 2.0 / ((1.0 + turn.m[0][0] + turn.m[1][1] + turn.m[2][2]) * time_step);
+        real scale = 2 / ((1 + turn.m[0][0] + turn.m[1][1] + turn.m[2][2]) * (real)time_step);
         trial->spin[0][lane] = scale * (turn.m[0][1] - turn.m[1][0]);
         trial->spin[1][lane] = scale * (turn.m[1][2] - turn.m[2][1]);
         trial->spin[2][lane] = scale * (turn.m[0][2] - turn.m[2][0]);
@@ -149,24 +153,24 @@ static bool trial_prepare(struct point *point, double time_step)
     for (int lane = 0; lane < POINT_LANES; lane++) {
         for (int component = 0; component < SYM3_COMPONENTS; component++) {
             trial->elastic[component][lane] =
-                point->state.elastic[component] + trial->strain[component][lane];
-            trial->rate[component][lane] = trial->strain[component][lane] / time_step;
+                (real)(point->state.elastic[component] + trial->strain[component][lane]);
+            trial->rate[component][lane] = (real)(trial->strain[component][lane] / time_step);
         }
         for (size_t state = 0; state < point->material->state_count; state++)
-            trial->history[state][lane] = point->state.history[state];
+            trial->history[state][lane] = (real)point->state.history[state];
         trial->volume_ratio[lane] = 1.0;
     }
     if (point->finite_strain) {
         for (int lane = 0; lane < POINT_LANES; lane++)
             trial->volume_ratio[lane] =
-                point->state.volume_ratio * mat3_determinant(trial->step[lane]);
+                (real)point->state.volume_ratio * mat3_determinant(trial->step[lane]);
         valid = point->material->volumetric || trial_elastic_finite(point);
         if (point->material->needs_spin)
             trial_spin(trial, time_step);
     }
     for (int lane = 0; point->material->volumetric && lane < POINT_LANES; lane++)
-        trial->elastic[0][lane] = point->state.elastic[0] + trial->strain[0][lane] +
-                                  trial->strain[1][lane] + trial->strain[2][lane];
+        trial->elastic[0][lane] = (real)(point->state.elastic[0] + trial->strain[0][lane] +
+                                         trial->strain[1][lane] + trial->strain[2][lane]);
     return valid;
 }
 
@@ -221,7 +225,7 @@ void point_trial_accept(struct point *point)
 
 double point_strain_energy(struct point *point)
 {
-    double energy[POINT_LANES];
+    real energy[POINT_LANES];
     struct point_trial *trial = &point->trial;
     struct material_batch batch = {
         .count = POINT_LANES,
@@ -230,9 +234,9 @@ double point_strain_energy(struct point *point)
     };
     for (int lane = 0; lane < POINT_LANES; lane++) {
         for (int component = 0; component < SYM3_COMPONENTS; component++)
-            trial->elastic[component][lane] = point->state.elastic[component];
+            trial->elastic[component][lane] = (real)point->state.elastic[component];
         for (size_t state = 0; state < point->material->state_count; state++)
-            trial->history[state][lane] = point->state.history[state];
+            trial->history[state][lane] = (real)point->state.history[state];
     }
     point_arrays(trial->elastic, batch.strain);
     point->material->strain_energy(point->constants, &batch, energy);

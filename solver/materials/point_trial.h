@@ -24,14 +24,15 @@ struct point_state {
 struct point_trial {
     double strain[SYM3_COMPONENTS][POINT_LANES]; /* in: total strain increment */
     struct mat3 step[POINT_LANES];               /* in: incremental gradient f, finite strain */
-    double elastic[SYM3_COMPONENTS][POINT_LANES];
-    double stress[SYM3_COMPONENTS][POINT_LANES]; /* out: Cauchy */
-    double rate[SYM3_COMPONENTS][POINT_LANES];
-    double spin[3][POINT_LANES];
-    double volume_ratio[POINT_LANES];
-    double plastic_strain[POINT_LANES], dissipation[POINT_LANES];
-    double *history_values; /* [state_count x POINT_LANES], owned */
-    double **history;       /* [state_count], owned */
+    real elastic[SYM3_COMPONENTS][POINT_LANES];
+    real stress[SYM3_COMPONENTS][POINT_LANES]; /* out: Cauchy */
+    real rate[SYM3_COMPONENTS][POINT_LANES];
+    real spin[3][POINT_LANES];
+    real volume_ratio[POINT_LANES];
+    real plastic_strain[POINT_LANES],
+        dissipation[POINT_LANES]; /* zero where the model writes none */
+    real *history_values;         /* [state_count x POINT_LANES], owned */
+    real **history;               /* [state_count], owned */
 };
 
 struct point {
