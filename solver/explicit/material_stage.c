@@ -4,6 +4,7 @@
 #include "antilocking/anti_locking.h"
 #include "explicit/stage_clock.h"
 #include "math/log1p_series.h"
+#include "math/tensor.h"
 
 #include <assert.h>
 #include <string.h>
@@ -40,70 +41,114 @@ static const real *weights_of(const struct run *run, const struct particle_block
     return scratch->weight;
 }
 
-/* stretch[slot] = b's factor minus one, exp(2 shift) - 1. */
-static void stretches(size_t count, const real *shift, real *stretch)
+/* exp(2 shift) - 1 for |2 shift| <= SERIES_LIMIT. */
+static inline lanes stretch_series(lanes shift)
 {
-    lanes largest = {0};
-    for (size_t slot = 0; slot < count; slot += LANE_COUNT)
-        largest = lanes_maximum(largest, lanes_absolute(lanes_load(shift + slot)));
-    if (2 * lanes_largest(largest) <= (real)SERIES_LIMIT) {
-#pragma omp simd
-        for (size_t slot = 0; slot < count; slot++)
-            stretch[slot] = (real)expm1_series(2 * shift[slot]);
-        return;
-    }
-    for (size_t slot = 0; slot < count; slot++)
-        stretch[slot] = (real)expm1(2.0 * (double)shift[slot]);
+    static const real inverse_factorial[] = {(real)(1.0 / 479001600),
+                                             (real)(1.0 / 39916800),
+                                             (real)(1.0 / 3628800),
+                                             (real)(1.0 / 362880),
+                                             (real)(1.0 / 40320),
+                                             (real)(1.0 / 5040),
+                                             (real)(1.0 / 720),
+                                             (real)(1.0 / 120),
+                                             (real)(1.0 / 24),
+                                             (real)(1.0 / 6),
+                                             (real)0.5};
+    const lanes x = 2 * shift;
+    lanes sum = lanes_splat(inverse_factorial[0]);
+    for (size_t k = 1; k < sizeof inverse_factorial / sizeof inverse_factorial[0]; k++)
+        sum = sum * x + inverse_factorial[k];
+    return x + x * (x * sum);
 }
 
-/* Adds the same to the logarithmic strain of all axes: b <- exp(2 shift) b, e <- e + s e + s/2. */
-static void shift_strain(const struct run *run, const struct particle_block *block,
-                         struct block_scratch *scratch, size_t count, const real *shift)
+static lanes stretch_of(lanes shift, bool small)
 {
-    real *stretch = scratch->compact_volume_ratio;
-    real *const *strain = scratch->strain;
-    real *stored[6] = {NULL};
-    for (uint32_t component = 0; component < run->strain_components; component++)
-        stored[component] = particle_values(&run->grid.layout, block, PARTICLE_STRAIN, component);
-    if (run->finite_strain)
-        stretches(count, shift, stretch);
-    for (size_t component = 0; component < run->strain_components; component++) {
-        const bool diagonal = component < 3;
-        for (size_t slot = 0; slot < count; slot += LANE_COUNT) {
-            const lanes add = lanes_load(shift + slot);
-            lanes e = lanes_load(stored[component] + slot);
-            if (diagonal)
-                lanes_store(strain[component] + slot, lanes_load(strain[component] + slot) + add);
-            if (run->finite_strain) {
-                const lanes grow = lanes_load(stretch + slot);
-                e += grow * (diagonal ? e + (real)0.5 : e);
-            } else if (diagonal) {
-                e += add;
-            }
-            lanes_store(stored[component] + slot, e);
+    if (small)
+        return stretch_series(shift);
+    lanes stretch = shift;
+    for (int lane = 0; lane < LANE_COUNT; lane++)
+        stretch[lane] = (real)expm1(2.0 * (double)shift[lane]);
+    return stretch;
+}
+
+static inline lanes trace_at(real *const tensor[6], size_t slot)
+{
+    return lanes_load(tensor[0] + slot) + lanes_load(tensor[1] + slot) +
+           lanes_load(tensor[2] + slot);
+}
+
+/* Mean trace of each cell; *largest: a bound on how far a particle of the block is from it. */
+static lanes mean_trace(size_t count, const real *weight, real *const tensor[6], real *largest)
+{
+    lanes total = {0}, sum = {0}, size = {0};
+    for (size_t slot = 0; slot < count; slot += LANE_COUNT) {
+        const lanes trace = trace_at(tensor, slot);
+        const lanes w = lanes_load(weight + slot);
+        total += w;
+        sum += w * trace;
+        size = lanes_maximum(size, lanes_absolute(trace));
+    }
+    *largest = 2 * lanes_largest(size);
+    return sum / lanes_select(total > 0, total, lanes_splat(1));
+}
+
+/* A third of what brings the trace of a row to the mean; 0 where the slot takes no part. */
+static inline lanes shift_at(const real *weight, real *const tensor[6], size_t slot, lanes mean)
+{
+    return lanes_keep(lanes_load(weight + slot) > 0,
+                      (real)(1.0 / 3.0) * (mean - trace_at(tensor, slot)));
+}
+
+/* Brings the trace of the logarithmic strain to the mean of the cell, and the stored form with it:
+ * b <- exp(2 shift) b, e <- e + s e + s/2. `components` is a constant where this is inlined. */
+TALUS_INLINE void shift_finite(size_t count, size_t components, const real *weight,
+                               real *const strain[6], real *const stored[6])
+{
+    real largest = 0;
+    const lanes mean = mean_trace(count, weight, strain, &largest);
+    const bool small = largest <= (real)SERIES_LIMIT;
+    for (size_t slot = 0; slot < count; slot += LANE_COUNT) {
+        const lanes shift = shift_at(weight, strain, slot, mean);
+        const lanes stretch = stretch_of(shift, small);
+        for (size_t component = 0; component < components; component++) {
+            const lanes e = lanes_load(stored[component] + slot);
+            const lanes half = lanes_splat(component < 3 ? (real)0.5 : 0);
+            lanes_store(stored[component] + slot, e + stretch * (e + half));
+            if (component < 3)
+                lanes_store(strain[component] + slot, lanes_load(strain[component] + slot) + shift);
         }
     }
 }
 
-/* The way of each slot's trace/3 to the mean of its cell; 0 where the slot takes no part. */
-static void shifts_to_mean(size_t count, const real *weight, real *const tensor[6], real *shift)
+static void shift_small(size_t count, const real *weight, real *const strain[6],
+                        real *const stored[6])
 {
-    lanes total = {0}, sum = {0};
+    real largest = 0;
+    const lanes mean = mean_trace(count, weight, strain, &largest);
     for (size_t slot = 0; slot < count; slot += LANE_COUNT) {
-        const lanes trace = lanes_load(tensor[0] + slot) + lanes_load(tensor[1] + slot) +
-                            lanes_load(tensor[2] + slot);
-        const lanes w = lanes_load(weight + slot);
-        total += w;
-        sum += w * trace;
-        lanes_store(shift + slot, trace);
+        const lanes shift = shift_at(weight, strain, slot, mean);
+        for (size_t component = 0; component < 3; component++) {
+            lanes_store(strain[component] + slot, lanes_load(strain[component] + slot) + shift);
+            lanes_store(stored[component] + slot, lanes_load(stored[component] + slot) + shift);
+        }
     }
-    const lanes mean = sum / lanes_select(total > 0, total, lanes_splat(1));
-    const real third = (real)(1.0 / 3.0);
-    for (size_t slot = 0; slot < count; slot += LANE_COUNT) {
-        const lane_mask takes_part = lanes_load(weight + slot) > 0;
-        lanes_store(shift + slot,
-                    lanes_keep(takes_part, third * (mean - lanes_load(shift + slot))));
-    }
+}
+
+static void shift_strain(const struct run *run, const struct particle_block *block,
+                         struct block_scratch *scratch, size_t count, const real *weight)
+{
+    real *stored[6] = {NULL};
+    for (uint32_t component = 0; component < run->strain_components; component++)
+        stored[component] = particle_values(&run->grid.layout, block, PARTICLE_STRAIN, component);
+    if (!run->finite_strain)
+        shift_small(count, weight, scratch->strain, stored);
+    else if (run->strain_components == 6)
+        shift_finite(count, 6, weight, scratch->strain, stored);
+    else if (run->strain_components == 4)
+        shift_finite(count, 4, weight, scratch->strain, stored);
+    else
+        shift_finite(count, 3, weight, scratch->strain, stored);
 }
 
 /* Replaces the volumetric trial strain by its cell average: strain and stored form,
@@ -121,16 +166,16 @@ static void average_strain(const struct run *run, const struct particle_block *b
                                                     lanes_load(stored + slot)));
         return;
     }
-    shifts_to_mean(count, weight, scratch->strain, scratch->mean);
-    shift_strain(run, block, scratch, count, scratch->mean);
+    shift_strain(run, block, scratch, count, weight);
 }
 
 /* Replaces the mean stress by its cell average. */
 static void average_stress(struct block_scratch *scratch, size_t count, const real *weight)
 {
-    shifts_to_mean(count, weight, scratch->stress, scratch->mean);
+    real largest = 0;
+    const lanes mean = mean_trace(count, weight, scratch->stress, &largest);
     for (size_t slot = 0; slot < count; slot += LANE_COUNT) {
-        const lanes shift = lanes_load(scratch->mean + slot);
+        const lanes shift = shift_at(weight, scratch->stress, slot, mean);
         for (size_t component = 0; component < 3; component++)
             lanes_store(scratch->stress[component] + slot,
                         lanes_load(scratch->stress[component] + slot) + shift);
