@@ -2,6 +2,7 @@
 #include "benchmark_bench.h"
 
 #include "benchmark_clock.h"
+#include "benchmark_machine.h"
 #include "benchmark_motion.h"
 
 #include <math.h>
@@ -206,6 +207,7 @@ bool bench_create(struct bench *bench, const struct benchmark_setup *setup,
         return complain("out of memory");
     if (!find_processor_clocks(bench))
         return complain("no clocks of processor time");
+    const double bytes = benchmark_allocated_memory();
     if (!benchmark_scene_create(setup, &bench->made) || !seed(bench))
         return false;
     talus_simulation_get_state(bench->simulation, &state);
@@ -213,6 +215,7 @@ bool bench_create(struct bench *bench, const struct benchmark_setup *setup,
     bench->particles = state.particle_count;
     benchmark_calibrate(&bench->nanoseconds_per_tick, &bench->nanoseconds_per_lap);
     develop(bench);
+    bench->bytes = benchmark_allocated_memory() - bytes;
     return true;
 }
 
@@ -281,6 +284,7 @@ void bench_summarise(const struct bench *bench, struct benchmark_result *result)
     result->simulated = result->time_step * bench->setup->threads /
                         (1e-9 * result->nanoseconds * (double)bench->particles);
     result->bytes_grid = (double)state.memory_bytes / (double)bench->particles;
+    result->bytes_all = bench->bytes / (double)bench->particles;
     result->lane_fill = (double)bench->particles * repeats / bench->slots;
     result->crossings = bench->crossers / repeats;
     result->mass_error =

@@ -22,6 +22,7 @@ struct bench {
     double *stages;                      /* [STAGE_COUNT][repeats] owned */
     double nanoseconds_per_tick, nanoseconds_per_lap;
     double initial_mass;
+    double bytes;                             /* allocated when the measurement started */
     double crossers, slots, simulated, steps; /* sums over repeats */
     size_t particles, impulse_count;
     bool failed;

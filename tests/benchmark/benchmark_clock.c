@@ -23,16 +23,34 @@ double benchmark_wall_seconds(void)
     return benchmark_clock_seconds(CLOCK_MONOTONIC);
 }
 
+/* Both clocks at one time: the reading that took least, so that nobody came between. */
+static void read_together(double *seconds, uint64_t *ticks)
+{
+    enum { TRIES = 50 };
+    uint64_t least = UINT64_MAX;
+    for (int try = 0; try < TRIES; try++) {
+        const uint64_t before = stage_clock_read();
+        const double now = benchmark_wall_seconds();
+        const uint64_t after = stage_clock_read();
+        if (after - before >= least)
+            continue;
+        least = after - before;
+        *ticks = before + least / 2;
+        *seconds = now;
+    }
+}
+
 void benchmark_calibrate(double *nanoseconds_per_tick, double *nanoseconds_per_lap)
 {
     enum { LAPS = 100000 };
     struct stage_clock clock = {0};
-    const double begin = benchmark_wall_seconds();
-    const uint64_t first = stage_clock_read();
+    double begin = 0, end = 0;
+    uint64_t first = 0, last = 0;
+    read_together(&begin, &first);
     while (benchmark_wall_seconds() - begin < 0.02) {
     }
-    *nanoseconds_per_tick =
-        1e9 * (benchmark_wall_seconds() - begin) / (double)(stage_clock_read() - first);
+    read_together(&end, &last);
+    *nanoseconds_per_tick = 1e9 * (end - begin) / (double)(last - first);
     const double start = benchmark_thread_seconds();
     stage_clock_start(&clock);
     for (int lap = 0; lap < LAPS; lap++)

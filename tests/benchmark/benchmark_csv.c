@@ -38,7 +38,8 @@ static void write_columns(FILE *file)
     (void)fputs(
         "set,case,body,ordering,anti_locking,threads,particles,per_axis,domain_factor,courant,"
         "steps,repeats,rate,rate_best,rate_low,rate_high,rate_wall,rate_wall_best,relative,"
-        "nanoseconds,time_step,simulated,bytes_stored,bytes_grid,lane_fill,crossings,strain,"
+        "nanoseconds,time_step,simulated,bytes_stored,bytes_grid,bytes_all,lane_fill,crossings,"
+        "strain,"
         "plastic,dissipation,mass_error,operations,gigaflops,peak,gigabytes,bandwidth,clock_share",
         file);
 #define STAGE(ENUM, name) (void)fputs(",ns_" #name, file);
@@ -59,10 +60,10 @@ static void write_row(const struct benchmark_row *row, FILE *file)
                   1e3 / result->fastest, 1e3 / result->quartile_high, 1e3 / result->quartile_low,
                   1e3 / result->wall_nanoseconds, 1e3 / result->wall_fastest, result->relative,
                   result->nanoseconds);
-    (void)fprintf(file, ",%.4g,%.4g,%.0f,%.1f,%.4f,%.6f,%.3g,%.4f,%.4g,%.2g", result->time_step,
-                  result->simulated, result->bytes_stored, result->bytes_grid, result->lane_fill,
-                  result->crossings, row->witness.strain, row->witness.plastic, result->dissipation,
-                  result->mass_error);
+    (void)fprintf(file, ",%.4g,%.4g,%.0f,%.1f,%.1f,%.4f,%.6f,%.3g,%.4f,%.4g,%.2g",
+                  result->time_step, result->simulated, result->bytes_stored, result->bytes_grid,
+                  result->bytes_all, result->lane_fill, result->crossings, row->witness.strain,
+                  row->witness.plastic, result->dissipation, result->mass_error);
     (void)fprintf(file, ",%.1f,%.3f,%.2f,%.3f,%.2f,%.3f", row->operations,
                   benchmark_row_gigaflops(row), result->peak, benchmark_row_gigabytes(row),
                   result->bandwidth, result->clock_share);

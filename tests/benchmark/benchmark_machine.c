@@ -2,6 +2,7 @@
 #include "benchmark_machine.h"
 
 #include <ctype.h>
+#include <malloc.h>
 #include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -54,4 +55,10 @@ double benchmark_free_memory(void)
     if (!find_line("/proc/meminfo", "MemAvailable", value, sizeof value))
         return 0;
     return 1024.0 * strtod(value, NULL);
+}
+
+double benchmark_allocated_memory(void)
+{
+    const struct mallinfo2 info = mallinfo2();
+    return (double)info.uordblks + (double)info.hblkhd;
 }

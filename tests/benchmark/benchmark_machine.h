@@ -11,5 +11,7 @@ void benchmark_processor(char *name, size_t size);
 void benchmark_processor_slug(char *slug, size_t size);
 /* Bytes of memory that could be taken now; 0 if the system does not tell. */
 double benchmark_free_memory(void);
+/* Bytes that this process has allocated, touched or not. */
+double benchmark_allocated_memory(void);
 
 #endif

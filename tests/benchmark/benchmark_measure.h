@@ -30,6 +30,7 @@ struct benchmark_result {
     double bandwidth;    /* [GB/s] of a core in the same repeats, in place */
     double bytes_stored; /* per particle: its values and ids */
     double bytes_grid;   /* per particle: all that the grid holds, capacities and nodes included */
+    double bytes_all;    /* per particle: all that has been allocated, touched or not */
     double bytes_moved;  /* per particle-step: particle values read and written */
     double lane_fill;    /* particles over slots walked */
     double crossings;    /* particles that left their cell, per particle-step */

@@ -42,9 +42,11 @@ void benchmark_report_one(const struct benchmark_row *row)
                  1e3 / result->quartile_low, result->nanoseconds, 1e3 / result->wall_nanoseconds,
                  1e3 / result->wall_fastest);
     (void)printf("step %.4g s, %.4g simulated s per s; bytes per particle %.0f stored, %.0f with "
-                 "the grid; lane fill %.3f; crossings %.5f; dissipation %.3g; mass error %.1g\n",
+                 "the grid, %.0f allocated; lane fill %.3f; crossings %.5f; dissipation %.3g; mass "
+                 "error %.1g\n",
                  result->time_step, result->simulated, result->bytes_stored, result->bytes_grid,
-                 result->lane_fill, result->crossings, result->dissipation, result->mass_error);
+                 result->bytes_all, result->lane_fill, result->crossings, result->dissipation,
+                 result->mass_error);
     (void)printf(
         "meanwhile %.1f GFLOP/s and %.1f GB/s in place of a core; values of particles move "
         "at %.1f GB/s (%.0f %%)",

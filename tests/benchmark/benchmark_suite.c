@@ -320,8 +320,9 @@ static bool run_flow_sets(struct benchmark_suite *suite, const struct plan *plan
         const struct benchmark_case *subject = &benchmark_cases[index];
         struct benchmark_setup base = base_setup(subject, plan->flow_particles);
         base.body = BENCHMARK_FLOW;
+        const int threads = plan->every && is_main_case(subject) ? suite->threads : 1;
         if ((plan->every || is_main_case(subject)) &&
-            !run_orderings(suite, BENCHMARK_DEVELOPED, base, 1, &plan->effort))
+            !run_orderings(suite, BENCHMARK_DEVELOPED, base, threads, &plan->effort))
             return false;
     }
     return true;

@@ -46,10 +46,10 @@ static void print_row(const struct benchmark_row *row)
 {
     const struct benchmark_result *result = &row->result;
     print_label(row);
-    (void)printf(" %7.2f %7.2f-%-7.2f %6.3f %9.3g %4.0f %5.0f %5.3f %7.5f",
+    (void)printf(" %7.2f %7.2f-%-7.2f %6.3f %9.3g %4.0f %5.0f %5.0f %5.3f %7.5f",
                  1e3 / result->nanoseconds, 1e3 / result->quartile_high, 1e3 / result->quartile_low,
                  result->relative, result->simulated, result->bytes_stored, result->bytes_grid,
-                 result->lane_fill, result->crossings);
+                 result->bytes_all, result->lane_fill, result->crossings);
     print_share(benchmark_row_gigaflops(row) / result->peak);
     print_share(benchmark_row_gigabytes(row) / result->bandwidth);
     print_share(row->witness.plastic);
@@ -75,10 +75,10 @@ void benchmark_table_print(const struct benchmark_suite *suite)
         "per particle stored, and with the grid; %%FMA and %%mem: of the peak and of the\n"
         "in-place bandwidth of the same moment; %%pl: particles that yield in a step; "
         "strain: of a step\n\n");
-    (void)printf("%-12s %-22s %-7s %-13s %-4s %1s %8s %7s %15s %6s %9s %4s %5s %5s %7s %5s %5s "
+    (void)printf("%-12s %-22s %-7s %-13s %-4s %1s %8s %7s %15s %6s %9s %4s %5s %5s %5s %7s %5s %5s "
                  "%5s %7s\n",
                  "set", "case", "body", "ordering", "lock", "T", "N", "rate", "quartiles", "rel",
-                 "sim", "B", "B all", "fill", "cross", "%FMA", "%mem", "%pl", "strain");
+                 "sim", "B", "grid", "all", "fill", "cross", "%FMA", "%mem", "%pl", "strain");
     for (size_t index = 0; index < suite->row_count; index++)
         print_row(&suite->rows[index]);
     (void)printf("\nns per particle-step and stage, summed over threads\n%-71s", "");

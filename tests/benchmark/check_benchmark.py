@@ -46,7 +46,7 @@ def check_row(row, value):
     expect(value["rate_wall"] > 0 and value["simulated"] > 0, f"{name}: no time has passed")
     expect(0 < value["lane_fill"] <= 1, f"{name}: lane fill {value['lane_fill']}")
     expect(0 <= value["crossings"] < 1, f"{name}: crossings {value['crossings']}")
-    expect(0 < value["bytes_stored"] <= value["bytes_grid"], f"{name}: bytes")
+    expect(0 < value["bytes_stored"] <= value["bytes_grid"] <= value["bytes_all"], f"{name}: bytes")
     expect(value["peak"] > 0 and value["bandwidth"] > 0, f"{name}: no ceilings")
     kicked = row["ordering"] == "modified_last"
     expect((value["ns_first_pass"] > 0) == kicked, f"{name}: first pass")
