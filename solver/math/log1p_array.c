@@ -7,3 +7,10 @@ void log1p_array(size_t count, const real *x, real *out)
     for (size_t i = 0; i < count; i++)
         out[i] = elementary_log1p(x[i]);
 }
+
+void expm1_array(size_t count, const real *x, real *out)
+{
+#pragma omp simd
+    for (size_t i = 0; i < count; i++)
+        out[i] = elementary_expm1(x[i]);
+}

@@ -66,7 +66,7 @@ TALUS_INLINE real expm1_medium(real x)
     return x + x * (x * sum);
 }
 
-/* For callers that tell small arguments apart. elementary_expm1() takes all, without a branch. */
+/* For callers that tell small arguments apart; expm1_array() takes all and is as fast. */
 #define SERIES_LIMIT 0.1
 
 static inline real expm1_series(real x)
@@ -76,5 +76,9 @@ static inline real expm1_series(real x)
 
 /* out[i] = log(1 + x[i]); NAN where x <= -1. out may be x. */
 void log1p_array(size_t count, const real *x, real *out);
+
+/* out[i] = exp(x[i]) - 1; beyond the range of elementary_exp() the value at its bound. out may be
+ * x. */
+void expm1_array(size_t count, const real *x, real *out);
 
 #endif

@@ -81,6 +81,24 @@ static void test_log1p(void **context)
     assert_true(elementary_log1p(0.0) == 0.0);
 }
 
+static void test_arrays(void **context)
+{
+    (void)context;
+    enum { COUNT = 37 }; /* no multiple of any vector */
+    double x[COUNT];
+    double logarithm[COUNT];
+    double exponential[COUNT];
+    for (int index = 0; index < COUNT; index++)
+        x[index] = 0.03 * (index - 30);
+    log1p_array(COUNT, x, logarithm);
+    memcpy(exponential, x, sizeof x);
+    expm1_array(COUNT, exponential, exponential);
+    for (int index = 0; index < COUNT; index++) {
+        assert_close(logarithm[index], log1pl((long double)x[index]));
+        assert_close(exponential[index], expm1l((long double)x[index]));
+    }
+}
+
 static void test_tangent(void **context)
 {
     (void)context;
@@ -95,10 +113,8 @@ static void test_tangent(void **context)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_exp),
-        cmocka_unit_test(test_expm1),
-        cmocka_unit_test(test_log1p),
-        cmocka_unit_test(test_tangent),
+        cmocka_unit_test(test_exp),    cmocka_unit_test(test_expm1),   cmocka_unit_test(test_log1p),
+        cmocka_unit_test(test_arrays), cmocka_unit_test(test_tangent),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
