@@ -4,15 +4,8 @@
 #include "math/plane_strain.h"
 #include "math/tensor_chunk.h"
 
-/* Norms of the strain up to which the series below serve, and up to which rounding in the closed
- * form stays as small as the exponential's own. */
-#ifdef TALUS_SINGLE
-static const real small_limit = 0.02;
-static const real medium_limit = 0.05;
-#else
-static const real small_limit = 1.5e-3;
-static const real medium_limit = 0.05;
-#endif
+/* Norm of the strain up to which rounding in the closed form stays as small as the exponential's
+ * own. */
 static const real large_limit = 10.0;
 
 /* exp(A) - I = A (I + A/2! + A^2/3! + ...) */
@@ -36,24 +29,6 @@ TALUS_INLINE struct combination exp_medium(struct invariants of)
     sum = combination_step(sum, 1.0 / 2.0, of);
     sum = combination_step(sum, 1.0, of);
     return combination_shift(sum, of);
-}
-
-/* Newton's interpolation between the eigenvalues a, b, c; exp of the lowest two from that of c. */
-TALUS_INLINE struct combination exp_large(struct invariants of)
-{
-    const struct eigenvalues at = traceless_eigenvalues(of);
-    const real ab = at.far - at.middle;
-    const real bc = at.middle - at.last;
-    const real c_change = elementary_expm1(at.last);
-    const real bc_change = ((real)1.0 + c_change) * elementary_expm1(bc);
-    const real b_change = c_change + bc_change;
-    const real ab_change = ((real)1.0 + b_change) * elementary_expm1(ab);
-    const real slope_ab = ab == 0.0 ? (real)1.0 + b_change : ab_change / ab;
-    const real slope_bc = bc == 0.0 ? (real)1.0 + c_change : bc_change / bc;
-    const real square = (slope_ab - slope_bc) / (at.far - at.last);
-    const real c0 = b_change - slope_ab * at.middle + square * at.far * at.middle;
-    return (struct combination){of.J2 > TENSOR_FUNCTION_TINY ? c0 : (real)0.0,
-                                slope_ab + square * at.last, square};
 }
 
 /* With A = 2 dev strain: (exp(2 strain) - I)/2 = exp(2 m) (exp(A) - I)/2 + (exp(2 m) - 1)/2 I. */
@@ -88,15 +63,61 @@ static void find_medium(struct tensor_chunk *chunk, size_t row_count)
                          exp_medium(doubled(chunk, slot)));
 }
 
+/* Eigenvalues a, b of each A and exp - 1 of c = -a - b, of the distances and of twice the mean:
+ * pass by pass, because each is long. */
+struct roots {
+    _Alignas(64) real a[TENSOR_CHUNK];
+    _Alignas(64) real b[TENSOR_CHUNK];
+    _Alignas(64) real exp_ab[TENSOR_CHUNK];
+    _Alignas(64) real exp_bc[TENSOR_CHUNK];
+    _Alignas(64) real exp_c[TENSOR_CHUNK];
+    _Alignas(64) real exp_mean[TENSOR_CHUNK];
+};
+
+static void find_roots(const struct tensor_chunk *chunk, size_t row_count, struct roots *roots)
+{
+    const size_t count = TENSOR_ROW * row_count;
+#pragma omp simd
+    for (size_t slot = 0; slot < count; slot++) {
+        const struct eigenvalues at = traceless_eigenvalues(doubled(chunk, slot));
+        roots->a[slot] = at.far;
+        roots->b[slot] = at.middle;
+        roots->exp_ab[slot] = at.far - at.middle;
+        roots->exp_bc[slot] = at.middle - at.last;
+        roots->exp_c[slot] = at.last;
+        roots->exp_mean[slot] = 2.0 * chunk->mean[slot];
+    }
+    expm1_array(count, roots->exp_ab, roots->exp_ab);
+    expm1_array(count, roots->exp_bc, roots->exp_bc);
+    expm1_array(count, roots->exp_c, roots->exp_c);
+    expm1_array(count, roots->exp_mean, roots->exp_mean);
+}
+
+/* Newton's interpolation between the eigenvalues: f = f(a) + f_ab (A - a) + f_abc (A - a)(A - b),
+ * or from f(b) as well; the exponentials of a and b from that of c. */
 static void find_large(struct tensor_chunk *chunk, size_t row_count, real_bits *beyond)
 {
+    struct roots roots;
+    find_roots(chunk, row_count, &roots);
 #pragma omp simd
     for (size_t slot = 0; slot < TENSOR_ROW * row_count; slot++) {
+        const real a = roots.a[slot];
+        const real b = roots.b[slot];
+        const real c = -a - b;
+        const real exp_c = 1.0 + roots.exp_c[slot];
+        const real change_bc = exp_c * roots.exp_bc[slot];
+        const real change_b = roots.exp_c[slot] + change_bc;
+        const real change_ab = ((real)1.0 + change_b) * roots.exp_ab[slot];
+        const real slope_ab = change_ab / (a - b);
+        const real slope_bc = b == c ? exp_c : change_bc / (b - c);
+        const real square = (slope_ab - slope_bc) / (a - c);
+        const real c0 = change_b - slope_ab * b + square * a * b;
+        const real J2 = chunk->J2[slot];
         const real mean = chunk->mean[slot];
-        const real square = 3.0 * mean * mean + 2.0 * chunk->J2[slot];
-        beyond[slot] = real_mask(!(square <= large_limit * large_limit));
-        set_coefficients(chunk, slot, elementary_expm1(2.0 * mean),
-                         exp_large(doubled(chunk, slot)));
+        beyond[slot] = tensor_above(3.0 * mean * mean + 2.0 * J2, large_limit);
+        set_coefficients(chunk, slot, roots.exp_mean[slot],
+                         (struct combination){J2 > TENSOR_FUNCTION_TINY ? c0 : (real)0.0,
+                                              slope_ab + square * c, square});
     }
 }
 
@@ -119,8 +140,7 @@ static size_t exp_large_chunk(struct tensor_chunk *chunk, size_t row_count, real
 static size_t exp_chunk(size_t row_count, real *const strain[6], real *const e[6])
 {
     struct tensor_chunk chunk;
-    const enum tensor_range range =
-        tensor_chunk_split(&chunk, row_count, strain, small_limit, medium_limit);
+    const enum tensor_range range = tensor_chunk_split(&chunk, row_count, strain);
     if (range == TENSOR_LARGE)
         return exp_large_chunk(&chunk, row_count, strain, e);
     if (range == TENSOR_SMALL)

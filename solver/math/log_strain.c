@@ -5,16 +5,6 @@
 #include "math/plane_strain.h"
 #include "math/tensor_chunk.h"
 
-/* Norms of e up to which the series below serve: what they neglect is under half of the last digit
- * (double) or far below it (single). */
-#ifdef TALUS_SINGLE
-static const real small_limit = 0.02;
-static const real medium_limit = 0.05;
-#else
-static const real small_limit = 1.5e-3;
-static const real medium_limit = 0.05;
-#endif
-
 /* Smallest eigenvalue of b, in shares of their mean, that the closed form takes: it loses digits
  * as the inverse. */
 static const real least_share = 0.1;
@@ -44,14 +34,6 @@ TALUS_INLINE struct combination log_medium(struct invariants of)
     sum = combination_step(sum, -0.5, of);
     sum = combination_step(sum, 1.0, of);
     return combination_shift(sum, of);
-}
-
-/* (ln(1 + a) - ln(1 + b))/(a - b) */
-TALUS_INLINE real log_slope(real a, real b)
-{
-    const real inverse = 1.0 / (1.0 + b);
-    const real t = (a - b) * inverse;
-    return t == 0.0 ? inverse : inverse * (elementary_log1p(t) / t);
 }
 
 /* b = I + 2 e = u (I + D), where u is the mean of its eigenvalues. */
@@ -105,29 +87,53 @@ TALUS_INLINE void find_medium(struct tensor_chunk *chunk, size_t row_count)
     }
 }
 
-/* Newton's interpolation between the eigenvalues. */
-TALUS_INLINE void find_large(struct tensor_chunk *restrict chunk, size_t row_count,
-                             real_bits *restrict beyond)
+/* Eigenvalues a, b of each D and the logarithms of (1 + a)/(1 + b) and (1 + b)/(1 + c), c = -a - b,
+ * and of det b: pass by pass, because each is long. */
+struct roots {
+    _Alignas(64) real a[TENSOR_CHUNK];
+    _Alignas(64) real b[TENSOR_CHUNK];
+    _Alignas(64) real log_ab[TENSOR_CHUNK];
+    _Alignas(64) real log_bc[TENSOR_CHUNK];
+    _Alignas(64) real log_determinant[TENSOR_CHUNK];
+};
+
+static void find_roots(const struct tensor_chunk *chunk, size_t row_count, struct roots *roots)
 {
-    _Alignas(64) real far[TENSOR_CHUNK], middle[TENSOR_CHUNK], slope[TENSOR_CHUNK];
+    const size_t count = TENSOR_ROW * row_count;
 #pragma omp simd
-    for (size_t slot = 0; slot < TENSOR_ROW * row_count; slot++) {
-        const struct eigenvalues at = traceless_eigenvalues(normalise(chunk, slot).of);
-        far[slot] = at.far;
-        middle[slot] = at.middle;
-    }
-#pragma omp simd
-    for (size_t slot = 0; slot < TENSOR_ROW * row_count; slot++)
-        slope[slot] = log_slope(far[slot], middle[slot]);
-#pragma omp simd
-    for (size_t slot = 0; slot < TENSOR_ROW * row_count; slot++) {
+    for (size_t slot = 0; slot < count; slot++) {
         const struct normalised b = normalise(chunk, slot);
-        const real last = -far[slot] - middle[slot];
-        const real square = (slope[slot] - log_slope(middle[slot], last)) / (far[slot] - last);
-        const real least = far[slot] < last ? far[slot] : last;
-        const struct combination log = {.c1 = slope[slot] + square * last, .c2 = square};
-        set_coefficients(chunk, slot, elementary_log1p(b.determinant_change), b.inverse, log);
-        beyond[slot] = real_mask(!(b.inverse > 0.0)) | real_mask(!(least >= least_share - 1.0));
+        const struct eigenvalues at = traceless_eigenvalues(b.of);
+        roots->a[slot] = at.far;
+        roots->b[slot] = at.middle;
+        roots->log_ab[slot] = (at.far - at.middle) / (1.0 + at.middle);
+        roots->log_bc[slot] = (at.middle - at.last) / (1.0 + at.last);
+        roots->log_determinant[slot] = b.determinant_change;
+    }
+    log1p_array(count, roots->log_ab, roots->log_ab);
+    log1p_array(count, roots->log_bc, roots->log_bc);
+    log1p_array(count, roots->log_determinant, roots->log_determinant);
+}
+
+/* Newton's interpolation between the eigenvalues: f = f(a) + f_ab (D - a) + f_abc (D - a)(D - b).
+ */
+static void find_large(struct tensor_chunk *chunk, size_t row_count, real_bits *beyond)
+{
+    struct roots roots;
+    find_roots(chunk, row_count, &roots);
+#pragma omp simd
+    for (size_t slot = 0; slot < TENSOR_ROW * row_count; slot++) {
+        const real inverse = normalise(chunk, slot).inverse;
+        const real a = roots.a[slot];
+        const real b = roots.b[slot];
+        const real c = -a - b;
+        const real slope_ab = roots.log_ab[slot] / (a - b);
+        const real slope_bc = b == c ? 1.0 / (1.0 + c) : roots.log_bc[slot] / (b - c);
+        const real square = (slope_ab - slope_bc) / (a - c);
+        const struct combination log = {.c1 = slope_ab + square * c, .c2 = square};
+        const real least = a < c ? a : c;
+        set_coefficients(chunk, slot, roots.log_determinant[slot], inverse, log);
+        beyond[slot] = real_mask(!(inverse > 0.0)) | real_mask(!(least >= least_share - 1.0));
     }
 }
 
@@ -150,8 +156,7 @@ static size_t log_large(struct tensor_chunk *chunk, size_t row_count, real *cons
 static size_t log_chunk(size_t row_count, real *const e[6], real *const strain[6])
 {
     struct tensor_chunk chunk;
-    const enum tensor_range range =
-        tensor_chunk_split(&chunk, row_count, e, small_limit, medium_limit);
+    const enum tensor_range range = tensor_chunk_split(&chunk, row_count, e);
     if (range == TENSOR_LARGE)
         return log_large(&chunk, row_count, e, strain);
     if (range == TENSOR_SMALL)

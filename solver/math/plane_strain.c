@@ -3,10 +3,6 @@
 
 #include "math/log1p_series.h"
 
-/* Norms up to which the series serve. */
-static const real small_limit = 1.5e-3;
-static const real medium_limit = 0.05;
-
 TALUS_INLINE enum tensor_range find_range(size_t components, size_t row_count, real *const a[6])
 {
     real_bits above_small = 0;
@@ -15,8 +11,8 @@ TALUS_INLINE enum tensor_range find_range(size_t components, size_t row_count, r
         const real xx = a[0][slot], yy = a[1][slot], zz = a[2][slot];
         const real xy = components > 3 ? a[3][slot] : (real)0.0;
         const real square = xx * xx + yy * yy + (zz * zz + 2.0 * (xy * xy));
-        above_small |= real_mask(!(square <= small_limit * small_limit));
-        above_medium |= real_mask(!(square <= medium_limit * medium_limit));
+        above_small |= tensor_above(square, TENSOR_SMALL_LIMIT);
+        above_medium |= tensor_above(square, TENSOR_MEDIUM_LIMIT);
     }
     return tensor_range_of(above_small != 0, above_medium != 0);
 }
@@ -158,8 +154,9 @@ TALUS_INLINE struct hyperbolic hyperbolic(enum tensor_range range, real j)
     }
     const real w = root(j);
     const real change = elementary_expm1(w);
-    const real share = change / (1.0 + change);
-    return (struct hyperbolic){0.5 * (change + share) / w, 0.5 * change * share};
+    const real rise = change / w;
+    const real fall = rise / (1.0 + change); /* (1 - exp(-w))/w */
+    return (struct hyperbolic){0.5 * (rise + fall), 0.5 * j * (rise * fall)};
 }
 
 /* In the plane, with A = 2 dev strain and A^2 = j I: (exp(2 strain) - I)/2 = exp(2 m)/2 (cosh(sqrt

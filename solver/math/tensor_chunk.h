@@ -16,7 +16,24 @@
 /* Slots go in rows; a chunk is what is treated alike. */
 enum { TENSOR_ROW = 4, TENSOR_CHUNK_ROWS = 16, TENSOR_CHUNK = TENSOR_ROW * TENSOR_CHUNK_ROWS };
 
+/* By the norm, which is what the series of log_strain.c, exp_strain.c and plane_strain.c are cut
+ * for: what they neglect is under half of the last digit. */
 enum tensor_range { TENSOR_SMALL, TENSOR_MEDIUM, TENSOR_LARGE };
+
+#ifdef TALUS_SINGLE
+#define TENSOR_SMALL_LIMIT 0.03f
+#define TENSOR_MEDIUM_LIMIT 0.1f
+#else
+#define TENSOR_SMALL_LIMIT 1.5e-3
+#define TENSOR_MEDIUM_LIMIT 0.05
+#endif
+
+/* Whether a square of a norm is above a limit, or NAN, as a mask: whole numbers gather what is true
+ * of any slot faster than a largest real is found. */
+TALUS_INLINE real_bits tensor_above(real square, real limit)
+{
+    return real_mask(!(square <= limit * limit));
+}
 
 /* From in[] to out[], which may be the same, of at most TENSOR_CHUNK_ROWS rows. Returns how many
  * slots have no result. */
@@ -68,10 +85,9 @@ TALUS_INLINE enum tensor_range tensor_range_of(bool above_small, bool above_medi
     return above_small ? TENSOR_MEDIUM : TENSOR_SMALL;
 }
 
-/* First pass. The range is that of the norms, by two limits; a NAN is large. */
+/* First pass. A NAN is large. */
 TALUS_INLINE enum tensor_range tensor_chunk_split(struct tensor_chunk *restrict chunk,
-                                                  size_t row_count, real *const a[6], real small,
-                                                  real medium)
+                                                  size_t row_count, real *const a[6])
 {
     real_bits above_small = 0;
     real_bits above_medium = 0;
@@ -85,8 +101,8 @@ TALUS_INLINE enum tensor_range tensor_chunk_split(struct tensor_chunk *restrict 
         chunk->mean[slot] = mean;
         chunk->J2[slot] = J2;
         chunk->J3[slot] = d.xx * c.xx + d.xy * c.xy + d.xz * c.xz;
-        above_small |= real_mask(!(square <= small * small));
-        above_medium |= real_mask(!(square <= medium * medium));
+        above_small |= tensor_above(square, TENSOR_SMALL_LIMIT);
+        above_medium |= tensor_above(square, TENSOR_MEDIUM_LIMIT);
     }
     return tensor_range_of(above_small != 0, above_medium != 0);
 }
