@@ -11,7 +11,7 @@
 #include <string.h>
 
 /* Blocks between what is fetched and what is worked on: about the time of a memory access. */
-enum { FIRST_PASS_AHEAD = 2, SECOND_PASS_AHEAD = 1 };
+enum { FIRST_PASS_AHEAD = 3, SECOND_PASS_AHEAD = 2 };
 
 int run_prepare_tiles(struct run *run)
 {
@@ -56,8 +56,10 @@ static void partition_outbox(struct run *run)
 
 /* Fetches the particles of a block further on in the tile, and the nodes that no block before it
  * touches. */
-static void prefetch_ahead(const struct run *run, const struct tile *tile, size_t entry,
-                           size_t distance, uint32_t component_count)
+__attribute__((always_inline)) static inline void prefetch_ahead(const struct run *run,
+                                                                 const struct tile *tile,
+                                                                 size_t entry, size_t distance,
+                                                                 uint32_t component_count)
 {
     if (entry + distance >= tile->end)
         return;

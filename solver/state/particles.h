@@ -72,9 +72,11 @@ static inline real *particle_values(const struct particle_layout *layout,
 }
 
 /* Asks for the first `components` components of a block's particles before they are needed: the
- * processor does not guess across blocks. */
-static inline void particle_block_prefetch(const struct particle_block *block,
-                                           uint32_t component_count)
+ * processor does not guess across blocks. Into the second-level cache: the first has too few places
+ * for misses on their way (measured: no gain). Inlined by force: gcc drops the call of a function
+ * that only fetches, as one without effect. */
+__attribute__((always_inline)) static inline void
+particle_block_prefetch(const struct particle_block *block, uint32_t component_count)
 {
     enum { CACHE_LINE = 64 };
     const char *data = (const char *)block->data;
