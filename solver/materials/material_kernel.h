@@ -8,6 +8,7 @@
 #include "materials/material.h"
 #include "math/tensor.h"
 
+#include <assert.h>
 #include <stdint.h>
 #include <string.h>
 
@@ -31,6 +32,7 @@ TALUS_INLINE size_t whole_rows(size_t count)
 
 TALUS_INLINE size_t slot_count(const struct material_batch *batch)
 {
+    assert(batch->count % MATERIAL_SLOT_MULTIPLE == 0);
     return whole_rows(batch->count);
 }
 
