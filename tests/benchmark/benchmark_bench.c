@@ -182,13 +182,21 @@ static bool find_processor_clocks(struct bench *bench)
     return bad == 0;
 }
 
-/* To where the measurement starts. */
+/* To where the measurement starts, always with modified_last at the default step, which is stable
+ * and gives both orderings the same body; then with the ordering and the step of the setup. */
 static void develop(struct bench *bench)
 {
-    if (bench->made.develop_time > 0)
-        bench_impel(bench);
-    while (!bench->failed && bench->simulation->run.time < bench->made.develop_time)
+    struct talus_error error = {0};
+    const struct benchmark_setup *setup = bench->setup;
+    struct run *run = &bench->simulation->run;
+    if (bench->made.develop_time == 0)
+        return;
+    bench_impel(bench);
+    while (!bench->failed && run->time < bench->made.develop_time)
         bench_take_steps(bench, 1);
+    const double courant = setup->courant > 0 ? setup->courant : run->scene.solver.courant;
+    if (!bench->failed && benchmark_set_ordering(run, setup->last, courant, &error) != TALUS_OK)
+        fail(bench, &error);
 }
 
 static bool complain(const char *text)

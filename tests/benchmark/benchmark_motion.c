@@ -40,15 +40,35 @@ static void set_block(const struct run *run, const struct particle_block *block,
     }
 }
 
-enum talus_status benchmark_set_motion(struct run *run, double sign, struct talus_error *error)
+/* Starts anew from the present particles. */
+static enum talus_status restart(struct run *run, struct talus_error *error)
 {
     const struct node_blocks *nodes = &run->grid.nodes;
-    for (size_t index = 0; index < run->grid.block_count; index++)
-        set_block(run, &run->grid.blocks[index], sign * MACH * run->materials[0].wave_speed);
     memset(nodes->values, 0,
            nodes->count * nodes->layout.component_count * LANE_COUNT * sizeof *nodes->values);
     memset(&run->energy, 0, sizeof run->energy);
     memset(&run->audit, 0, sizeof run->audit);
     run->checked_speed = 0;
     return run_start(run, error);
+}
+
+enum talus_status benchmark_set_motion(struct run *run, double sign, struct talus_error *error)
+{
+    for (size_t index = 0; index < run->grid.block_count; index++)
+        set_block(run, &run->grid.blocks[index], sign * MACH * run->materials[0].wave_speed);
+    return restart(run, error);
+}
+
+enum talus_status benchmark_set_ordering(struct run *run, bool last, double courant,
+                                         struct talus_error *error)
+{
+    struct node_layout *layout = &run->grid.nodes.layout;
+    const uint32_t component_count = layout->component_count;
+    node_layout_init(layout, run->grid.domain.axis_count, last);
+    if (layout->component_count != component_count)
+        return talus_error_set(error, TALUS_INTERNAL, "layout", "",
+                               "the orderings no longer store as much at the nodes");
+    run->scene.solver.stress_update = last ? TALUS_STRESS_LAST : TALUS_STRESS_MODIFIED_LAST;
+    run->scene.solver.courant = courant;
+    return restart(run, error);
 }

@@ -14,4 +14,9 @@
 TALUS_MUST_CHECK enum talus_status benchmark_set_motion(struct run *run, double sign,
                                                         struct talus_error *error);
 
+/* Goes on with the other ordering, and with that share of the critical step, from the present
+ * particles. */
+TALUS_MUST_CHECK enum talus_status
+benchmark_set_ordering(struct run *run, bool last, double courant, struct talus_error *error);
+
 #endif
