@@ -19,7 +19,8 @@
 struct talus_simulation;
 
 struct talus_simulation_options {
-    int threads; /* at least 1 */
+    int threads;      /* at least 1; at most so many are used, fewer where more do not pay ... */
+    bool all_threads; /* ... unless this asks for all of them */
 };
 
 /* Builds the simulation at t = 0: particles seeded, initial stress set, forces ready.
@@ -153,6 +154,7 @@ struct talus_estimate {
     uint64_t step_count;
     uint64_t memory_bytes;
     uint64_t bytes_per_particle;
+    int useful_threads; /* as many as pay, on a machine that has them */
 };
 /* What a scene would cost, in milliseconds and without allocating its particles. TALUS_INVALID for
  * a fixed step above the critical one (pointer /solver/time_step) unless the scene allows it. */

@@ -93,7 +93,8 @@ struct run_audit {
 
 struct run {
     struct talus_scene scene; /* own copy */
-    int threads;
+    int threads;              /* of the next step */
+    int thread_capacity;      /* at most so many; what is per thread has room for them */
     struct sparse_grid grid;
     struct run_material *materials; /* [scene.material_count] owned */
     uint16_t *body_material;        /* [scene.body_count] owned */

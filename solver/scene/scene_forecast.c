@@ -91,8 +91,7 @@ static double wall_seconds(const struct talus_scene *scene, const struct talus_e
 {
     double share = plastic_share(scene);
     double rate = rates[scene->dimension][0] * (1.0 - share) + rates[scene->dimension][1] * share;
-    /* A thread needs about four thousand particles to be worth starting. */
-    double useful = fmax(1.0, fmin(threads, (double)estimate->particle_count / 4000.0));
+    double useful = fmax(1.0, fmin(threads, estimate->useful_threads));
     double per_step = (double)estimate->particle_count / (rate * useful) + step_overhead * useful;
     return start_seconds + (double)estimate->step_count * per_step + written / frame_byte_rate;
 }
@@ -129,14 +128,14 @@ json_t *scene_forecast(const struct talus_scene *scene, int threads, struct talu
                     8.0 * frame_components(scene) * (double)estimate.particle_count;
     double wall = wall_seconds(scene, &estimate, threads, written);
     json_t *forecast = json_pack(
-        "{s:o, s:o, s:f, s:f, s:o, s:o, s:o, s:o, s:o, s:{s:f, s:f, s:f}}", "particles",
+        "{s:o, s:o, s:f, s:f, s:o, s:o, s:o, s:o, s:o, s:i, s:{s:f, s:f, s:f}}", "particles",
         whole((double)estimate.particle_count), "active_cells",
         whole((double)estimate.active_cell_count), "critical_time_step",
         estimate.critical_time_step, "time_step", estimate.time_step, "steps",
         whole((double)estimate.step_count), "memory_bytes", whole(memory), "bytes_per_particle",
         whole((double)estimate.bytes_per_particle), "disk_bytes", whole(written + checkpoint),
-        "bodies", describe_bodies(scene), "wall_seconds", "low", wall / rate_uncertainty,
-        "expected", wall, "high", wall * rate_uncertainty);
+        "bodies", describe_bodies(scene), "threads", estimate.useful_threads, "wall_seconds", "low",
+        wall / rate_uncertainty, "expected", wall, "high", wall * rate_uncertainty);
     if (forecast == NULL)
         (void)talus_error_set(error, TALUS_MEMORY, "memory", "", "out of memory");
     return forecast;

@@ -121,7 +121,7 @@ static enum talus_status build_walls(struct run *run, struct talus_error *error)
     run->faces = calloc(run->walls.face_count + 1, sizeof *run->faces);
     run->boundaries = calloc(run->scene.boundary_count + 1, sizeof *run->boundaries);
     run->windows = calloc(windows + 1, sizeof *run->windows);
-    run->scratch = calloc((size_t)run->threads, sizeof *run->scratch);
+    run->scratch = calloc((size_t)run->thread_capacity, sizeof *run->scratch);
     if (run->faces == NULL || run->boundaries == NULL || run->windows == NULL ||
         run->scratch == NULL)
         return talus_error_set(error, TALUS_MEMORY, "memory", "", "out of memory");
@@ -200,7 +200,7 @@ enum talus_status run_build(struct run *run, const struct talus_scene *scene, in
     if (refuse_body_filters(scene, error) != TALUS_OK ||
         refuse_mixed_elimination(scene, error) != TALUS_OK)
         return TALUS_UNSUPPORTED;
-    run->threads = threads < 1 ? 1 : threads;
+    run->threads = run->thread_capacity = threads < 1 ? 1 : threads;
     run->finite_strain = scene->solver.strain == TALUS_STRAIN_FINITE;
     run->strain_components = strain_components(scene);
     build_domain(scene, &run->grid.domain);
@@ -225,7 +225,7 @@ void run_release(struct run *run)
     for (size_t index = 0;
          run->windows != NULL && index < run->walls.face_count + run->scene.boundary_count; index++)
         free(run->windows[index].entries);
-    for (int thread = 0; run->scratch != NULL && thread < run->threads; thread++)
+    for (int thread = 0; run->scratch != NULL && thread < run->thread_capacity; thread++)
         block_scratch_release(&run->scratch[thread]);
     free(run->materials);
     free(run->body_material);

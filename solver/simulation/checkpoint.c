@@ -346,6 +346,8 @@ enum talus_status talus_simulation_restore(const struct talus_scene *scene,
     struct talus_simulation *created = calloc(1, sizeof *created);
     if (created == NULL)
         return talus_error_set(error, TALUS_MEMORY, "memory", "", "out of memory");
+    thread_choice_init(&created->choice);
+    created->all_threads = options->all_threads;
     enum talus_status status = run_build(&created->run, scene, options->threads, error);
     if (status == TALUS_OK && !restore_state(created, found))
         status = talus_error_set(error, TALUS_INVALID, "checkpoint", "",

@@ -3,6 +3,7 @@
 #include "seeding/seeding.h"
 #include "simulation/simulation_private.h"
 
+#include <limits.h>
 #include <math.h>
 #include <string.h>
 
@@ -33,6 +34,7 @@ enum talus_status talus_simulation_estimate(const struct talus_scene *scene,
         return status;
     }
     seeding_count(scene, &estimate->particle_count, &estimate->active_cell_count);
+    estimate->useful_threads = threads_that_pay(estimate->particle_count, INT_MAX);
     const double critical = run_critical_time_step(&run, fastest_body(scene));
     const double fixed = scene->solver.time_step;
     estimate->critical_time_step = critical;

@@ -11,6 +11,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <time.h>
 
 void simulation_warn(struct talus_simulation *simulation, const char *code, const char *pointer,
                      const char *format, ...)
@@ -133,11 +134,16 @@ enum talus_status talus_simulation_create(const struct talus_scene *scene,
     *simulation = NULL;
     if (created == NULL)
         return talus_error_set(error, TALUS_MEMORY, "memory", "", "out of memory");
+    thread_choice_init(&created->choice);
+    created->all_threads = options->all_threads;
     enum talus_status status = run_build(&created->run, scene, options->threads, error);
     if (status == TALUS_OK)
         status = place_particles(&created->run, error);
     if (status == TALUS_OK)
         status = prepare(created, error);
+    if (status == TALUS_OK && !options->all_threads)
+        created->run.threads =
+            threads_that_pay(created->run.initial_particle_count, created->run.thread_capacity);
     if (status == TALUS_OK)
         status = run_start(&created->run, error);
     if (status != TALUS_OK) {
@@ -164,6 +170,39 @@ void talus_simulation_destroy(struct talus_simulation *simulation)
     free(simulation);
 }
 
+static size_t count_particles(struct talus_simulation *simulation)
+{
+    const struct run *run = &simulation->run;
+    /* Particles only ever go, and take mass along. */
+    if (simulation->particle_count == 0 ||
+        simulation->counted_without != run->audit.eliminated_mass) {
+        simulation->particle_count = sparse_grid_particle_count(&run->grid);
+        simulation->counted_without = run->audit.eliminated_mass;
+    }
+    return simulation->particle_count;
+}
+
+static double clock_seconds(void)
+{
+    struct timespec now;
+    (void)clock_gettime(CLOCK_MONOTONIC, &now);
+    return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
+}
+
+/* With as many threads as pay. */
+static enum talus_status take_step(struct talus_simulation *simulation, struct talus_error *error)
+{
+    struct run *run = &simulation->run;
+    if (simulation->all_threads || run->thread_capacity == 1)
+        return run_take_step(run, error);
+    const int pay = threads_that_pay(count_particles(simulation), run->thread_capacity);
+    run->threads = thread_choice_next(&simulation->choice, pay);
+    const double begin = clock_seconds();
+    const enum talus_status status = run_take_step(run, error);
+    thread_choice_note(&simulation->choice, pay, clock_seconds() - begin);
+    return status;
+}
+
 enum talus_status talus_simulation_step(struct talus_simulation *simulation,
                                         struct talus_error *error)
 {
@@ -173,7 +212,7 @@ enum talus_status talus_simulation_step(struct talus_simulation *simulation,
                                "the simulation has become unstable and cannot go on");
     if (run->time_step <= 0)
         return TALUS_OK;
-    const enum talus_status status = run_take_step(run, error);
+    const enum talus_status status = take_step(simulation, error);
     if (status != TALUS_OK)
         return status;
     const double fixed = run->scene.solver.time_step;
@@ -211,13 +250,7 @@ void talus_simulation_get_clock(struct talus_simulation *simulation,
 {
     const struct run *run = &simulation->run;
     *state = clock_of(run);
-    /* Particles only ever go, and take mass along. */
-    if (simulation->particle_count == 0 ||
-        simulation->counted_without != run->audit.eliminated_mass) {
-        simulation->particle_count = sparse_grid_particle_count(&run->grid);
-        simulation->counted_without = run->audit.eliminated_mass;
-    }
-    state->particle_count = simulation->particle_count;
+    state->particle_count = count_particles(simulation);
 }
 
 void talus_simulation_get_state(const struct talus_simulation *simulation,

@@ -5,6 +5,7 @@
 
 #include "explicit/run.h"
 #include "simulation/probe_scan.h"
+#include "simulation/thread_choice.h"
 #include "talus/simulation.h"
 
 enum { WARNING_CAPACITY = 32 };
@@ -15,6 +16,8 @@ struct probe_place {
 
 struct talus_simulation {
     struct run run;
+    struct thread_choice choice;
+    bool all_threads;             /* whether they pay or not */
     size_t particle_count;        /* alive, as counted ... */
     double counted_without;       /* ... when so much mass had been eliminated [kg] */
     struct talus_column *columns; /* owned */

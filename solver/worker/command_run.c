@@ -9,17 +9,29 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 enum { THREADS_MAX = 1024, ATTEMPT_MAX = 1 << 20 };
 
-static bool read_count(const char *text, int maximum, int *value)
+static bool read_count(const char *text, int minimum, int maximum, int *value)
 {
     char *end = NULL;
     errno = 0;
     long number = strtol(text, &end, 10);
-    if (errno != 0 || *text == '\0' || *end != '\0' || number < 1 || number > maximum)
+    if (errno != 0 || *text == '\0' || *end != '\0' || number < minimum || number > maximum)
         return false;
     *value = (int)number;
+    return true;
+}
+
+/* 0: as many as there are processors; the simulation uses those that pay. */
+static bool read_threads(const char *text, int *threads)
+{
+    if (!read_count(text, 0, THREADS_MAX, threads))
+        return false;
+    const long processors = sysconf(_SC_NPROCESSORS_ONLN);
+    if (*threads == 0)
+        *threads = processors < 1 ? 1 : processors < THREADS_MAX ? (int)processors : THREADS_MAX;
     return true;
 }
 
@@ -37,11 +49,14 @@ static bool read_option(struct job_options *options, int letter, const char *val
         options->folder = value;
         return *value != '\0';
     case 't':
-        return read_count(value, THREADS_MAX, &options->threads);
+        return read_threads(value, &options->threads);
     case 'a':
-        return read_count(value, ATTEMPT_MAX, &options->attempt);
+        return read_count(value, 1, ATTEMPT_MAX, &options->attempt);
     case 'w':
         return read_seconds(value, &options->wall_seconds);
+    case 'A':
+        options->all_threads = true;
+        return true;
     case 'r':
         options->resume = true;
         return true;
@@ -57,6 +72,7 @@ static bool read_options(int argument_count, char **arguments, struct job_option
 {
     static const struct option known[] = {{"out", required_argument, NULL, 'o'},
                                           {"threads", required_argument, NULL, 't'},
+                                          {"all-threads", no_argument, NULL, 'A'},
                                           {"attempt", required_argument, NULL, 'a'},
                                           {"wall-seconds", required_argument, NULL, 'w'},
                                           {"resume", no_argument, NULL, 'r'},
@@ -71,8 +87,8 @@ static bool read_options(int argument_count, char **arguments, struct job_option
         }
     }
     if (optind + 1 != argument_count || options->folder == NULL) {
-        (void)fputs("usage: talus-worker run SCENE.json --out DIR [--threads N] [--attempt A] "
-                    "[--resume] [--wall-seconds S] [--quiet]\n",
+        (void)fputs("usage: talus-worker run SCENE.json --out DIR [--threads N] [--all-threads] "
+                    "[--attempt A] [--resume] [--wall-seconds S] [--quiet]\n",
                     stderr);
         return false;
     }

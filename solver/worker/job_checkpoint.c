@@ -201,7 +201,8 @@ enum talus_status job_restore(struct job_run *run, uint64_t *row, struct talus_e
     char path[FILE_PATH_SIZE];
     struct checkpoint checkpoint;
     struct restored restored = {.row = 0};
-    struct talus_simulation_options options = {.threads = run->options->threads};
+    struct talus_simulation_options options = {.threads = run->options->threads,
+                                               .all_threads = run->options->all_threads};
     enum talus_status status =
         file_path(path, run->options->folder, PROTOCOL_CHECKPOINT_FILE, error);
     if (status != TALUS_OK)

@@ -26,7 +26,8 @@
 
 struct job_options {
     const char *scene_path, *folder;
-    int threads;         /* at least 1 */
+    int threads;         /* at least 1; fewer are used where more do not pay ... */
+    bool all_threads;    /* ... but for this */
     int attempt;         /* 0: 1, or the one after the last in events.ndjson when resuming */
     double wall_seconds; /* of this attempt; 0: no limit */
     bool resume, quiet;

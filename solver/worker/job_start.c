@@ -162,7 +162,8 @@ static enum talus_status make_simulation(struct job_run *run, uint64_t *row, boo
                                          struct talus_error *error)
 {
     struct talus_error reason = {.status = TALUS_OK};
-    struct talus_simulation_options options = {.threads = run->options->threads};
+    struct talus_simulation_options options = {.threads = run->options->threads,
+                                               .all_threads = run->options->all_threads};
     char path[FILE_PATH_SIZE];
     enum talus_status status =
         file_path(path, run->options->folder, PROTOCOL_CHECKPOINT_FILE, error);

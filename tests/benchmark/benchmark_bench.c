@@ -44,7 +44,8 @@ void bench_take_steps(struct bench *bench, size_t count)
 static bool seed(struct bench *bench)
 {
     struct talus_error error = {0};
-    const struct talus_simulation_options options = {.threads = bench->setup->threads};
+    const struct talus_simulation_options options = {.threads = bench->setup->threads,
+                                                     .all_threads = true};
     talus_simulation_destroy(bench->simulation);
     bench->simulation = NULL;
     bench->impulse_count = 0;

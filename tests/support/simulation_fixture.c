@@ -160,7 +160,7 @@ struct talus_simulation *simulation_fixture_start(const struct simulation_fixtur
 {
     struct talus_simulation *simulation = NULL;
     struct talus_error error = {0};
-    const struct talus_simulation_options options = {.threads = threads};
+    const struct talus_simulation_options options = {.threads = threads, .all_threads = true};
     if (talus_simulation_create(&fixture->scene, &options, &simulation, &error) != TALUS_OK)
         fail_msg("create: %s", error.text);
     return simulation;

@@ -131,7 +131,7 @@ class SolverTest(worker_run.RunTest):
     def test_any_number_of_threads_gives_the_same_bits(self):
         short = scene(duration=0.05)
         self.run_job(short, "one")
-        self.run_job(short, "two", "--threads", "2")
+        self.run_job(short, "two", "--threads", "2", "--all-threads")
         self.assert_same_results("one", "two")
 
     def test_looking_does_not_change_the_run(self):

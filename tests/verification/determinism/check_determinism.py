@@ -60,7 +60,8 @@ def last_frame(run):
 def check(verification, model, dimension, update="modified_last"):
     one = verification.run(scene(model, dimension, update), threads=1)
     for threads in (2, 3) if FULL else (2,):
-        other = verification.run(scene(model, dimension, update), threads=threads)
+        other = verification.run(scene(model, dimension, update), threads=threads,
+                                 options=("--all-threads",))
         label = f"{model}, {dimension}, {update}, 1 and {threads} threads"
         verification.equal(f"{label}: state hash", other.receipt["state_hash"],
                            one.receipt["state_hash"])
