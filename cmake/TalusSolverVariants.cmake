@@ -10,7 +10,7 @@ if(CMAKE_SYSTEM_PROCESSOR STREQUAL "x86_64")
     set(TALUS_ISA_x86-64-v4 -march=x86-64-v4 -mprefer-vector-width=256)
 endif()
 # What is built to be looked into is built once.
-if(TALUS_SANITIZE OR TALUS_THREAD_SANITIZE)
+if(TALUS_SANITIZE OR TALUS_THREAD_SANITIZE OR TALUS_COVERAGE)
     set(TALUS_ISAS)
 endif()
 

@@ -2,8 +2,11 @@
 # SPDX-License-Identifier: Apache-2.0
 # Installs the Debian 12 packages that Talus is built from: as root directly, otherwise with sudo.
 # Does nothing, and needs no network, when they are all there.
-#   deploy/install-dependencies.sh            what building, running and testing need
-#   deploy/install-dependencies.sh --checks   also clang, clang-format and clang-tidy
+#   deploy/install-dependencies.sh [OPTION...]   what building, running and testing need, and
+#       --checks     clang, clang-format, clang-tidy, valgrind, qemu-user: what .ci/run uses
+#       --aarch64    the cross compiler and libraries of the preset aarch64 (adds the architecture
+#                    arm64 to dpkg)
+#       --coverage   gcovr
 set -euo pipefail
 
 packages=(
@@ -12,21 +15,34 @@ packages=(
     libcurl4-openssl-dev libssl-dev libcmocka-dev
     fonts-dejavu-core python3 python3-numpy python3-h5py
 )
-checks=(clang libomp-dev clang-format clang-tidy)
+add_architecture=
+for option in "$@"; do
+    case "$option" in
+    --checks) packages+=(clang libomp-dev clang-format clang-tidy valgrind qemu-user) ;;
+    --aarch64)
+        add_architecture=arm64
+        packages+=(gcc-aarch64-linux-gnu libc6-dev-arm64-cross qemu-user
+            libgomp1:arm64 libcmocka-dev:arm64)
+        ;;
+    --coverage) packages+=(gcovr) ;;
+    *)
+        echo "usage: $0 [--checks] [--aarch64] [--coverage]" >&2
+        exit 2
+        ;;
+    esac
+done
 
-case "${1:-}" in
-'') ;;
---checks) packages+=("${checks[@]}") ;;
-*)
-    echo "usage: $0 [--checks]" >&2
-    exit 2
-    ;;
-esac
+# With several architectures, a name without one means the machine's own.
+is_installed() {
+    local name=${1%:*} architecture=${1##*:}
+    [ "$architecture" != "$name" ] || architecture="all|$(dpkg --print-architecture)"
+    dpkg-query --show --showformat='${Architecture} ${db:Status-Status}\n' "$name" 2>/dev/null |
+        grep -qxE "($architecture) installed"
+}
 
 missing=()
 for package in "${packages[@]}"; do
-    state=$(dpkg-query --show --showformat='${db:Status-Status}' "$package" 2>/dev/null || true)
-    [ "$state" = installed ] || missing+=("$package")
+    is_installed "$package" || missing+=("$package")
 done
 if [ ${#missing[@]} -eq 0 ]; then
     exit 0
@@ -41,6 +57,9 @@ if [ "$(id -u)" -ne 0 ]; then
     as_root=(sudo)
 fi
 echo "installing: ${missing[*]}"
+if [ -n "$add_architecture" ]; then
+    "${as_root[@]}" dpkg --add-architecture "$add_architecture"
+fi
 "${as_root[@]}" apt-get update -qq
 "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive \
     apt-get install -y -qq --no-install-recommends "${missing[@]}" >/dev/null
