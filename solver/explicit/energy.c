@@ -148,7 +148,7 @@ void run_book_eliminated_energy(struct run *run, const struct particle_record *r
     /* A block of one row with this particle in its first lane, through the same code. */
     const struct particle_layout *layout = &run->grid.layout;
     _Alignas(64) real values[PARTICLE_MAX_DOUBLES * LANE_COUNT] = {0};
-    uint32_t ids[LANE_COUNT] = {record->id, PARTICLE_NONE, PARTICLE_NONE, PARTICLE_NONE};
+    uint32_t ids[LANE_COUNT] = {record->id};
     uint16_t bodies[LANE_COUNT] = {record->body};
     struct particle_block block = {.row_count = 1,
                                    .row_capacity = 1,
@@ -156,6 +156,8 @@ void run_book_eliminated_energy(struct run *run, const struct particle_record *r
                                    .data = values,
                                    .id = ids,
                                    .body = layout->has_body ? bodies : NULL};
+    for (size_t lane = 1; lane < LANE_COUNT; lane++)
+        ids[lane] = PARTICLE_NONE;
     for (size_t component = 0; component < layout->double_count; component++)
         values[component * LANE_COUNT] = record->values[component];
     struct tile_sums sums = {0};

@@ -121,11 +121,13 @@ static void kick_block(struct run *run, size_t block, double factor)
 {
     const struct node_blocks *nodes = &run->grid.nodes;
     const lanes mass = lanes_load(node_values(nodes, block, nodes->layout.mass));
-    const lane_mask moves = mass > run->mass_cutoff;
-    const lanes inverse = 1.0 / lanes_select(moves, mass, lanes_splat(1.0));
+    const lane_mask moves = mass > (real)run->mass_cutoff;
+    const lanes inverse = (real)1.0 / lanes_select(moves, mass, lanes_splat((real)1.0));
+    const real time_step = (real)run->time_step;
     for (uint32_t axis = 0; axis < run->grid.domain.axis_count; axis++) {
         const lanes force = lanes_load(node_values(nodes, block, nodes->layout.force + axis));
-        const lanes kick = run->time_step * (force * inverse + factor * run->scene.gravity[axis]);
+        const lanes kick =
+            time_step * (force * inverse + (real)(factor * run->scene.gravity[axis]));
         lanes_store(node_values(nodes, block, nodes->layout.kick + axis), lanes_keep(moves, kick));
         lanes_store(node_values(nodes, block, nodes->layout.momentum + axis), lanes_splat(0.0));
     }
@@ -151,7 +153,7 @@ void run_kick_nodes(struct run *run)
             contact_hold_back(run->walls.faces, &wall->faces, mass, run->time_step, increment);
             for (uint32_t axis = 0; axis < run->grid.domain.axis_count; axis++)
                 node_values(nodes, wall->block, nodes->layout.kick + axis)[wall->lane] =
-                    increment[axis];
+                    (real)increment[axis];
         }
     }
 }
@@ -162,14 +164,16 @@ static void update_block(struct run *run, size_t block, double factor)
 {
     const struct node_blocks *nodes = &run->grid.nodes;
     const bool last = run->scene.solver.stress_update == TALUS_STRESS_LAST;
-    const double damping = run->scene.solver.local_damping;
+    const real damping = (real)run->scene.solver.local_damping;
     const lanes mass = lanes_load(node_values(nodes, block, nodes->layout.mass));
-    const lane_mask moves = mass > run->mass_cutoff;
-    const lanes inverse = 1.0 / lanes_select(moves, mass, lanes_splat(1.0));
+    const lane_mask moves = mass > (real)run->mass_cutoff;
+    const lanes inverse = (real)1.0 / lanes_select(moves, mass, lanes_splat((real)1.0));
+    const real time_step = (real)run->time_step;
     for (uint32_t axis = 0; axis < run->grid.domain.axis_count; axis++) {
-        double *momentum = node_values(nodes, block, nodes->layout.momentum + axis);
+        real *momentum = node_values(nodes, block, nodes->layout.momentum + axis);
         const lanes force = lanes_load(node_values(nodes, block, nodes->layout.force + axis));
-        const lanes whole = run->time_step * (force * inverse + factor * run->scene.gravity[axis]);
+        const lanes whole =
+            time_step * (force * inverse + (real)(factor * run->scene.gravity[axis]));
         const lanes start = lanes_load(momentum) * inverse;
         lanes correction = last ? whole : lanes_splat(0.0);
         if (damping > 0) {
@@ -178,7 +182,7 @@ static void update_block(struct run *run, size_t block, double factor)
             const lanes speed = lanes_absolute(moving);
             const lanes brake = damping * lanes_absolute(whole);
             const lanes taken = lanes_select(brake < speed, brake, speed);
-            correction -= lanes_select(moving > 0.0, taken, -taken);
+            correction -= lanes_select(moving > (real)0.0, taken, -taken);
         }
         correction = lanes_keep(moves, correction);
         lanes_store(node_values(nodes, block, nodes->layout.correction + axis), correction);
@@ -293,9 +297,9 @@ static void update_wall_node(struct run *run, struct wall_node *wall, double fac
         brake_at_wall(&contact, &passage, run->scene.solver.local_damping, totals + 5);
     for (uint32_t axis = 0; axis < run->grid.domain.axis_count; axis++) {
         node_values(nodes, wall->block, nodes->layout.velocity + axis)[wall->lane] =
-            contact.velocity[axis];
+            (real)contact.velocity[axis];
         node_values(nodes, wall->block, nodes->layout.correction + axis)[wall->lane] =
-            contact.handed_velocity[axis] - passage.kept[axis];
+            (real)(contact.handed_velocity[axis] - passage.kept[axis]);
         /* Along the normal the boundary does no work; along it this is the work of friction. */
         totals[4] -= wall->impulse[axis] * contact.velocity[axis];
     }
@@ -412,7 +416,7 @@ static void book_body_forces(struct run *run, double factor)
     assert(run->grid.domain.axis_count <= 3);
     double mass_sum = 0, impulse[3] = {0, 0, 0}, energy = 0;
     for (size_t block = 0; block < nodes->count; block++) {
-        const double *mass = node_values(nodes, block, nodes->layout.mass);
+        const real *mass = node_values(nodes, block, nodes->layout.mass);
         for (size_t lane = 0; lane < LANE_COUNT; lane++) {
             if (mass[lane] <= run->mass_cutoff)
                 continue;
@@ -447,9 +451,9 @@ static void book_ramp(struct run *run, double factor)
     const struct node_blocks *nodes = &run->grid.nodes;
     double power = 0;
     for (size_t block = 0; block < nodes->count; block++) {
-        const double *mass = node_values(nodes, block, nodes->layout.mass);
+        const real *mass = node_values(nodes, block, nodes->layout.mass);
         for (uint32_t axis = 0; axis < run->grid.domain.axis_count; axis++) {
-            const double *velocity = node_values(nodes, block, nodes->layout.velocity + axis);
+            const real *velocity = node_values(nodes, block, nodes->layout.velocity + axis);
             for (size_t lane = 0; lane < LANE_COUNT; lane++)
                 power += mass[lane] * run->scene.gravity[axis] * velocity[lane];
         }

@@ -15,16 +15,15 @@ static bool rebase(const struct run *run, struct particle_record *record, int32_
     const uint32_t first = run->grid.layout.first_component[PARTICLE_POSITION];
     bool inside = true;
     for (size_t axis = 0; axis < domain->axis_count; axis++) {
-        double *position = &record->values[first + axis];
-        const double hop = fmin(fmax(floor(*position + 0.5), -2e9), 2e9);
+        const double position = record->values[first + axis];
+        const double hop = fmin(fmax(floor(position + 0.5), -2e9), 2e9);
         if (!(hop + cell[axis] >= 0 && hop + cell[axis] < domain->cell_count[axis])) {
             inside = false;
             continue;
         }
         cell[axis] += (int32_t)hop;
-        *position -= hop;
         /* Rounding may leave the particle a last bit beyond the edge of its cell. */
-        *position = fmin(fmax(*position, -0.5), 0.5);
+        record->values[first + axis] = (real)fmin(fmax(position - hop, -0.5), 0.5);
     }
     return inside;
 }

@@ -138,18 +138,17 @@ const struct talus_blob *talus_simulation_checkpoint(struct talus_simulation *si
 {
     const struct run *run = &simulation->run;
     const struct checkpoint_header header = make_header(simulation);
-    const size_t sizes[BLOB_COUNT] = {sizeof header,
-                                      run->grid.block_count * sizeof(struct checkpoint_block),
-                                      particle_bytes(run),
-                                      run->grid.nodes.count * sizeof *run->grid.nodes.place,
-                                      run->grid.nodes.count *
-                                          run->grid.nodes.layout.component_count * LANE_COUNT *
-                                          sizeof(double),
-                                      run->walls.face_count * sizeof *run->faces,
-                                      run->scene.boundary_count * sizeof *run->boundaries,
-                                      windows_bytes(run),
-                                      run->scene.probe_count * sizeof *simulation->probe_ids,
-                                      run->wall_node_count * 3 * sizeof(double)};
+    const size_t sizes[BLOB_COUNT] = {
+        sizeof header,
+        run->grid.block_count * sizeof(struct checkpoint_block),
+        particle_bytes(run),
+        run->grid.nodes.count * sizeof *run->grid.nodes.place,
+        run->grid.nodes.count * run->grid.nodes.layout.component_count * LANE_COUNT * sizeof(real),
+        run->walls.face_count * sizeof *run->faces,
+        run->scene.boundary_count * sizeof *run->boundaries,
+        windows_bytes(run),
+        run->scene.probe_count * sizeof *simulation->probe_ids,
+        run->wall_node_count * 3 * sizeof(double)};
     static const char *const names[BLOB_COUNT] = {
         "header", "blocks",     "particles", "node_places",     "node_values",
         "faces",  "boundaries", "windows",   "probe_particles", "wall_impulses"};
@@ -216,7 +215,7 @@ static bool header_fits(const struct run *run, const struct checkpoint_header *h
            found[1]->bytes == header->block_count * sizeof(struct checkpoint_block) &&
            found[3]->bytes == header->node_block_count * 3 * sizeof(int32_t) &&
            found[4]->bytes == header->node_block_count * header->node_component_count * LANE_COUNT *
-                                  sizeof(double) &&
+                                  sizeof(real) &&
            found[5]->bytes == run->walls.face_count * sizeof *run->faces &&
            found[6]->bytes == run->scene.boundary_count * sizeof *run->boundaries &&
            found[8]->bytes == run->scene.probe_count * sizeof(uint32_t) &&

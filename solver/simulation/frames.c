@@ -91,14 +91,16 @@ static void logarithmic_strain(const double displacement_gradient[9], double str
 {
     static const unsigned char row[6] = {0, 1, 2, 0, 1, 0}, column[6] = {0, 1, 2, 1, 2, 2};
     const double *g = displacement_gradient;
-    double *arrays[6];
+    real values[6], *arrays[6];
     for (size_t k = 0; k < 6; k++) {
         const size_t a = row[k], b = column[k];
-        strain[k] = 0.5 * (g[3 * a + b] + g[3 * b + a] + g[3 * a] * g[3 * b] +
-                           g[3 * a + 1] * g[3 * b + 1] + g[3 * a + 2] * g[3 * b + 2]);
-        arrays[k] = &strain[k];
+        values[k] = (real)(0.5 * (g[3 * a + b] + g[3 * b + a] + g[3 * a] * g[3 * b] +
+                                  g[3 * a + 1] * g[3 * b + 1] + g[3 * a + 2] * g[3 * b + 2]));
+        arrays[k] = &values[k];
     }
     (void)log_strain_batch(1, 6, arrays, arrays);
+    for (size_t k = 0; k < 6; k++)
+        strain[k] = values[k];
 }
 
 void field_values(const struct run *run, const struct particle_block *block, size_t slot,

@@ -96,7 +96,7 @@ uint64_t talus_simulation_state_hash(const struct talus_simulation *simulation)
             const unsigned char *bytes =
                 (const unsigned char *)(block->data +
                                         (size_t)component * block->row_capacity * LANE_COUNT);
-            for (size_t byte = 0; byte < slots * sizeof(double); byte++)
+            for (size_t byte = 0; byte < slots * sizeof(real); byte++)
                 hash = (hash ^ bytes[byte]) * 0x100000001b3u;
         }
         for (size_t slot = 0; slot < slots; slot++)

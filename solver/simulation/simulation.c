@@ -46,24 +46,27 @@ static void set_initial_strain(const struct run *run, const struct particle_seed
 {
     const struct particle_layout *layout = &run->grid.layout;
     const struct run_material *material = &run->materials[run->body_material[seed->body[particle]]];
-    double stress[6] = {0}, strain[6] = {0}, stored[6] = {0};
+    double stress[6] = {0}, strain[6] = {0};
+    real stored[6] = {0};
     for (size_t component = 0; seed->stress[0] != NULL && component < 6; component++)
         stress[component] = seed->stress[component][particle];
     material->model->strain_from_stress(material->constants, stress, strain);
-    memcpy(stored, strain, sizeof stored);
+    for (size_t component = 0; component < 6; component++)
+        stored[component] = (real)strain[component];
     if (run->finite_strain && !material->model->volumetric) {
-        double *in[6], *out[6];
-        for (size_t component = 0; component < 6; component++) {
-            in[component] = &strain[component];
-            out[component] = &stored[component];
-        }
-        exp_strain_batch(1, run->strain_components, in, out);
+        real *arrays[6];
+        for (size_t component = 0; component < 6; component++)
+            arrays[component] = &stored[component];
+        exp_strain_batch(1, run->strain_components, arrays, arrays);
     }
     for (size_t component = 0; component < run->stored_components; component++)
         record->values[layout->first_component[PARTICLE_STRAIN] + component] = stored[component];
-    if (material->model->initialise != NULL)
-        material->model->initialise(material->constants, strain,
-                                    &record->values[layout->first_component[PARTICLE_HISTORY]]);
+    if (material->model->initialise == NULL)
+        return;
+    double history[SCRATCH_HISTORY_MAX] = {0};
+    material->model->initialise(material->constants, strain, history);
+    for (size_t state = 0; state < material->model->state_count; state++)
+        record->values[layout->first_component[PARTICLE_HISTORY] + state] = (real)history[state];
 }
 
 static enum talus_status place_particle(struct run *run, const struct particle_seed *seed,
@@ -82,12 +85,12 @@ static enum talus_status place_particle(struct run *run, const struct particle_s
         const double limited = fmin(fmax(floor(lines), 0), (double)domain->cell_count[axis] - 1);
         cell[axis] = (int32_t)limited;
         record->values[layout->first_component[PARTICLE_POSITION] + axis] =
-            fmin(fmax(lines - limited - 0.5, -0.5), 0.5);
+            (real)fmin(fmax(lines - limited - 0.5, -0.5), 0.5);
         record->values[layout->first_component[PARTICLE_VELOCITY] + axis] =
-            seed->velocity[axis][particle];
+            (real)seed->velocity[axis][particle];
     }
-    record->values[layout->first_component[PARTICLE_MASS]] = seed->mass[particle];
-    record->values[layout->first_component[PARTICLE_VOLUME]] = seed->volume[particle];
+    record->values[layout->first_component[PARTICLE_MASS]] = (real)seed->mass[particle];
+    record->values[layout->first_component[PARTICLE_VOLUME]] = (real)seed->volume[particle];
     set_initial_strain(run, seed, particle, record);
     size_t slot = 0;
     if (sparse_grid_insert(&run->grid, cell, record, &slot) == BLOCK_NONE)
