@@ -34,6 +34,7 @@ struct talus_grid {
 
 enum talus_stress_update { TALUS_STRESS_MODIFIED_LAST, TALUS_STRESS_LAST };
 enum talus_strain { TALUS_STRAIN_FINITE, TALUS_STRAIN_SMALL };
+enum talus_precision { TALUS_PRECISION_DOUBLE, TALUS_PRECISION_SINGLE };
 enum talus_anti_locking_control { TALUS_CONTROL_NONE, TALUS_CONTROL_CELL };
 enum talus_anti_locking_apply { TALUS_APPLY_STRAIN_AND_STRESS, TALUS_APPLY_STRAIN };
 
@@ -47,9 +48,10 @@ struct talus_solver_options {
     enum talus_strain strain;
     enum talus_anti_locking_control anti_locking; /* field: volumetric */
     enum talus_anti_locking_apply anti_locking_apply;
-    double viscous_damping; /* C [-] of the viscous stress C rho h c tr(d) 1 */
-    double local_damping;   /* [-] share of the out-of-balance force */
-    double force_ramp;      /* [s]; 0: none */
+    double viscous_damping;         /* C [-] of the viscous stress C rho h c tr(d) 1 */
+    double local_damping;           /* [-] share of the out-of-balance force */
+    double force_ramp;              /* [s]; 0: none */
+    enum talus_precision precision; /* of particles, nodes and kernels */
 };
 
 struct talus_material {

@@ -102,7 +102,8 @@ bool talus_simulation_take_warning(struct talus_simulation *simulation,
                                    struct talus_warning *warning);
 
 /* At the end: TALUS_AUDIT with the figures in *error if mass, momentum or energy fail their limits
- * (mass 1e-12, momentum 1e-9 of the impulse exchanged, energy growth 1 %). */
+ * (mass 1e-12, momentum 1e-9 of the impulse exchanged, energy growth 1 %; in single precision
+ * 1e-6, 1e-4, 1 %). */
 TALUS_MUST_CHECK enum talus_status talus_simulation_audit(struct talus_simulation *simulation,
                                                           struct talus_error *error);
 
@@ -141,6 +142,10 @@ talus_simulation_restore(const struct talus_scene *scene,
 /* Instruction set that the solver was compiled for ("x86-64-v3", ...; static storage). Results have
  * the same bits on the same build and instruction set. */
 const char *talus_simulation_isa(void);
+
+/* What particles, nodes and kernels of this build compute in. A simulation of a scene that asks for
+ * the other precision is TALUS_UNSUPPORTED; a scene is estimated by any build. */
+enum talus_precision talus_simulation_precision(void);
 
 /* 64-bit hash of the particle state (all fields, storage order): equal states have equal hashes. */
 uint64_t talus_simulation_state_hash(const struct talus_simulation *simulation);

@@ -18,7 +18,7 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-enum { SYM3_COMPONENTS = 6, MATERIAL_SLOT_MULTIPLE = 4 };
+enum { SYM3_COMPONENTS = 6, MATERIAL_SLOT_MULTIPLE = 32 / sizeof(real) };
 
 /* Scratch arrays of one block of particles; slot i of every array belongs to the same particle.
  * Empty slots hold zero strain, volume_ratio 1 and zero history, and must come out finite.

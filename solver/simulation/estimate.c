@@ -22,6 +22,18 @@ static uint64_t saturate(double value)
     return value >= 1.8e19 ? UINT64_MAX : (uint64_t)value;
 }
 
+/* Of the build that will run the scene, which may not be this one. */
+static size_t number_bytes(const struct talus_scene *scene)
+{
+    return scene->solver.precision == TALUS_PRECISION_SINGLE ? sizeof(float) : sizeof(double);
+}
+
+static double particle_bytes(const struct particle_layout *layout, size_t number)
+{
+    return (double)(layout->double_count * number + sizeof(uint32_t) +
+                    (layout->has_body ? sizeof(uint16_t) : 0));
+}
+
 enum talus_status talus_simulation_estimate(const struct talus_scene *scene,
                                             struct talus_estimate *estimate,
                                             struct talus_error *error)
@@ -40,14 +52,16 @@ enum talus_status talus_simulation_estimate(const struct talus_scene *scene,
     estimate->critical_time_step = critical;
     estimate->time_step = fixed > 0 ? fixed : scene->solver.courant * critical;
     estimate->step_count = saturate(ceil(scene->duration / estimate->time_step * (1 - 1e-12)));
-    const double chunk = (double)particle_chunk_bytes(&run.grid.layout, 64) / (64 * LANE_COUNT);
-    estimate->bytes_per_particle = (uint64_t)ceil(chunk);
-    const double per_node_block =
-        (double)run.grid.nodes.layout.component_count * LANE_COUNT * sizeof(double);
+    const double per_particle = particle_bytes(&run.grid.layout, number_bytes(scene));
+    estimate->bytes_per_particle = (uint64_t)per_particle;
+    const double per_node = (double)(run.grid.nodes.layout.component_count * number_bytes(scene));
+    /* Blocks are as wide as vectors of 32 bytes. */
+    const double block_count =
+        (double)(estimate->active_cell_count * number_bytes(scene)) / sizeof(lanes);
     /* Chunks are a quarter too large on average; nodes double when they grow. */
-    estimate->memory_bytes = saturate(
-        1.4 * chunk * (double)estimate->particle_count +
-        (double)estimate->active_cell_count / LANE_COUNT * (2.5 * per_node_block + 200) + 4e6);
+    estimate->memory_bytes =
+        saturate(1.4 * per_particle * (double)estimate->particle_count +
+                 2.5 * per_node * (double)estimate->active_cell_count + 200 * block_count + 4e6);
     run_release(&run);
     if (fixed > critical && !scene->solver.allow_unstable)
         return talus_error_set(error, TALUS_INVALID, "over_critical", "/solver/time_step",

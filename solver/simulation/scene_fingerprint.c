@@ -53,6 +53,7 @@ static void add_solver(uint64_t *hash, const struct talus_scene *scene)
     add_number(hash, (uint64_t)solver->strain);
     add_number(hash, (uint64_t)solver->anti_locking);
     add_number(hash, (uint64_t)solver->anti_locking_apply);
+    add_number(hash, (uint64_t)solver->precision);
     add_reals(hash, reals, sizeof reals / sizeof reals[0]);
     add_reals(hash, scene->gravity, 3);
     add_number(hash, scene->output.frame_fields);

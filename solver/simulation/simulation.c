@@ -100,6 +100,14 @@ static enum talus_status place_particle(struct run *run, const struct particle_s
     return TALUS_OK;
 }
 
+/* Nodes lighter than this share of a particle carry no motion: their mass is what rounding leaves
+ * of sums over whole cells, some REAL_EPSILON of a particle. */
+#ifdef TALUS_SINGLE
+static const double mass_cutoff = 1e-5;
+#else
+static const double mass_cutoff = 1e-11;
+#endif
+
 static enum talus_status place_particles(struct run *run, struct talus_error *error)
 {
     struct particle_seed seed = {0};
@@ -113,7 +121,7 @@ static enum talus_status place_particles(struct run *run, struct talus_error *er
         least_mass = fmin(least_mass, seed.mass[particle]);
     }
     run->initial_particle_count = seed.count;
-    run->mass_cutoff = 1e-11 * least_mass;
+    run->mass_cutoff = mass_cutoff * least_mass;
     seeding_release(&seed);
     return status;
 }
@@ -128,6 +136,17 @@ static enum talus_status prepare(struct talus_simulation *simulation, struct tal
     return TALUS_OK;
 }
 
+enum talus_status simulation_check_precision(const struct talus_scene *scene,
+                                             struct talus_error *error)
+{
+    if (scene->solver.precision == talus_simulation_precision())
+        return TALUS_OK;
+    return talus_error_set(error, TALUS_UNSUPPORTED, "unsupported", "/solver/precision",
+                           "this solver is built for %s precision",
+                           talus_simulation_precision() == TALUS_PRECISION_SINGLE ? "single"
+                                                                                  : "double");
+}
+
 enum talus_status talus_simulation_create(const struct talus_scene *scene,
                                           const struct talus_simulation_options *options,
                                           struct talus_simulation **simulation,
@@ -139,7 +158,9 @@ enum talus_status talus_simulation_create(const struct talus_scene *scene,
         return talus_error_set(error, TALUS_MEMORY, "memory", "", "out of memory");
     thread_choice_init(&created->choice);
     created->all_threads = options->all_threads;
-    enum talus_status status = run_build(&created->run, scene, options->threads, error);
+    enum talus_status status = simulation_check_precision(scene, error);
+    if (status == TALUS_OK)
+        status = run_build(&created->run, scene, options->threads, error);
     if (status == TALUS_OK)
         status = place_particles(&created->run, error);
     if (status == TALUS_OK)
@@ -284,6 +305,13 @@ bool talus_simulation_is_nearest(const struct talus_simulation *simulation, doub
     return run->time_step <= 0 || run->time + 0.5 * run->time_step > time;
 }
 
+/* Largest errors that an audit lets pass. */
+#ifdef TALUS_SINGLE
+static const double mass_limit = 1e-6, momentum_limit = 1e-4;
+#else
+static const double mass_limit = 1e-12, momentum_limit = 1e-9;
+#endif
+
 enum talus_status talus_simulation_audit(struct talus_simulation *simulation,
                                          struct talus_error *error)
 {
@@ -300,12 +328,12 @@ enum talus_status talus_simulation_audit(struct talus_simulation *simulation,
             growth = metrics[index].value;
     }
     const double limit = run->scene.energy_growth_limit;
-    if (mass <= 1e-12 && momentum <= 1e-9 && growth <= limit)
+    if (mass <= mass_limit && momentum <= momentum_limit && growth <= limit)
         return TALUS_OK;
     return talus_error_set(
         error, TALUS_AUDIT, "audit", "",
-        "mass error %.3g (limit 1e-12), momentum error %.3g (limit 1e-9), energy "
+        "mass error %.3g (limit %g), momentum error %.3g (limit %g), energy "
         "growth %.3g (limit %.3g) of the energy turned over; if energy has grown, try a smaller "
         "courant or time_step, viscous_damping, or a pic_rate",
-        mass, momentum, growth, limit);
+        mass, mass_limit, momentum, momentum_limit, growth, limit);
 }

@@ -16,3 +16,12 @@ const char *talus_simulation_isa(void)
     return "generic";
 #endif
 }
+
+enum talus_precision talus_simulation_precision(void)
+{
+#ifdef TALUS_SINGLE
+    return TALUS_PRECISION_SINGLE;
+#else
+    return TALUS_PRECISION_DOUBLE;
+#endif
+}

@@ -38,6 +38,11 @@ __attribute__((format(printf, 4, 5))) void simulation_warn(struct talus_simulati
                                                            const char *code, const char *pointer,
                                                            const char *format, ...);
 
+/* ---- simulation.c ---- */
+/* TALUS_UNSUPPORTED if the scene asks for the precision that this build does not have. */
+TALUS_MUST_CHECK enum talus_status simulation_check_precision(const struct talus_scene *scene,
+                                                              struct talus_error *error);
+
 /* ---- build.c: from the scene, without particles ---- */
 TALUS_MUST_CHECK enum talus_status run_build(struct run *run, const struct talus_scene *scene,
                                              int threads, struct talus_error *error);

@@ -11,7 +11,14 @@ typedef int64_t wide_mask __attribute__((vector_size(LANE_COUNT * sizeof(double)
 
 static inline wide_lanes lanes_widen(lanes value)
 {
+#ifdef TALUS_SINGLE
+    wide_lanes wide; /* gcc 12 fails to convert eight lanes at once */
+    for (int lane = 0; lane < LANE_COUNT; lane++)
+        wide[lane] = (double)value[lane];
+    return wide;
+#else
     return __builtin_convertvector(value, wide_lanes);
+#endif
 }
 
 static inline wide_lanes wide_lanes_maximum(wide_lanes a, wide_lanes b)

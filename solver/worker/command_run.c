@@ -98,7 +98,7 @@ static bool read_options(int argument_count, char **arguments, struct job_option
 
 int command_run(int argument_count, char **arguments)
 {
-    struct job_options options = {.threads = 1};
+    struct job_options options = {.threads = 1, .arguments = arguments};
     if (!read_options(argument_count, arguments, &options))
         return PROTOCOL_EXIT_OTHER;
     struct talus_error error = {.status = TALUS_OK};

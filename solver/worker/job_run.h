@@ -31,6 +31,7 @@ struct job_options {
     int attempt;         /* 0: 1, or the one after the last in events.ndjson when resuming */
     double wall_seconds; /* of this attempt; 0: no limit */
     bool resume, quiet;
+    char *const *arguments; /* of the sub-command, its name first */
 };
 
 /* What a checkpoint stores besides the simulation: with these an interrupted run goes on as if it

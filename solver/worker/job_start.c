@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 #include "output/file.h"
 #include "worker/job_run.h"
+#include "worker/precision.h"
 
 #include "talus/version.h"
 
@@ -268,6 +269,9 @@ enum talus_status job_start(struct job_run *run, struct talus_error *error)
     run->clock.printed = run->clock.start;
     run->clock.tables = run->clock.start;
     enum talus_status scene_status = read_scene(run, &warnings, error);
+    if (scene_status == TALUS_OK)
+        scene_status =
+            precision_switch(run->scene.solver.precision, run->options->arguments, error);
     enum talus_status status = scene_status;
     /* A bad scene makes no folder; in one that is ours already it is told as an event. */
     if (scene_status == TALUS_OK || getenv(PROTOCOL_LOCK_ENVIRONMENT) != NULL) {

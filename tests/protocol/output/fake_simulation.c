@@ -400,3 +400,8 @@ const char *talus_simulation_isa(void)
 {
     return "none";
 }
+
+enum talus_precision talus_simulation_precision(void)
+{
+    return TALUS_PRECISION_DOUBLE;
+}
