@@ -40,10 +40,24 @@ static void read_together(double *seconds, uint64_t *ticks)
     }
 }
 
+/* [ns] the least that a reading of the stage clock costs. */
+static double least_lap(void)
+{
+    enum { LAPS = 5000, TRIES = 20 };
+    struct stage_clock clock = {0};
+    double least = INFINITY;
+    for (int try = 0; try < TRIES; try++) {
+        const double start = benchmark_thread_seconds();
+        stage_clock_start(&clock);
+        for (int lap = 0; lap < LAPS; lap++)
+            stage_clock_lap(&clock, STAGE_WAIT);
+        least = fmin(least, 1e9 * (benchmark_thread_seconds() - start) / LAPS);
+    }
+    return least;
+}
+
 void benchmark_calibrate(double *nanoseconds_per_tick, double *nanoseconds_per_lap)
 {
-    enum { LAPS = 100000 };
-    struct stage_clock clock = {0};
     double begin = 0, end = 0;
     uint64_t first = 0, last = 0;
     read_together(&begin, &first);
@@ -51,11 +65,7 @@ void benchmark_calibrate(double *nanoseconds_per_tick, double *nanoseconds_per_l
     }
     read_together(&end, &last);
     *nanoseconds_per_tick = 1e9 * (end - begin) / (double)(last - first);
-    const double start = benchmark_thread_seconds();
-    stage_clock_start(&clock);
-    for (int lap = 0; lap < LAPS; lap++)
-        stage_clock_lap(&clock, STAGE_WAIT);
-    *nanoseconds_per_lap = 1e9 * (benchmark_thread_seconds() - start) / LAPS;
+    *nanoseconds_per_lap = least_lap();
 }
 
 static int compare(const void *a, const void *b)
