@@ -54,14 +54,12 @@ static void partition_outbox(struct run *run)
     }
 }
 
-/* Fetches the particles of a block further on in the tile, and the nodes that no block before it
- * touches. */
-__attribute__((always_inline)) static inline void prefetch_ahead(const struct run *run,
-                                                                 const struct tile *tile,
-                                                                 size_t entry, size_t distance,
-                                                                 uint32_t component_count)
+/* Fetches the particles of a block further on, in this tile or the next one of the colour, and the
+ * nodes that no block before it touches. */
+__attribute__((always_inline)) static inline void
+prefetch_ahead(const struct run *run, size_t entry, size_t distance, uint32_t component_count)
 {
-    if (entry + distance >= tile->end)
+    if (entry + distance >= run->grid.block_count)
         return;
     const struct particle_block *block = &run->grid.blocks[run->grid.tile_blocks[entry + distance]];
     const size_t last = ((size_t)1 << run->grid.domain.axis_count) - 1;
@@ -76,7 +74,7 @@ static void kick_tile(struct run *run, const struct tile *tile, struct stage_clo
     stage_clock_lap(clock, STAGE_WAIT);
     const uint32_t kicked = run->grid.layout.first_component[PARTICLE_MASS] + 1;
     for (size_t entry = tile->begin; entry < tile->end; entry++) {
-        prefetch_ahead(run, tile, entry, FIRST_PASS_AHEAD, kicked);
+        prefetch_ahead(run, entry, FIRST_PASS_AHEAD, kicked);
         run->kernels->kick(&context, &run->grid.blocks[run->grid.tile_blocks[entry]]);
     }
     stage_clock_lap(clock, STAGE_FIRST_PASS);
@@ -91,10 +89,20 @@ static void advance_tile(struct run *run, size_t index, struct block_scratch *sc
     sums->least_jacobian = 1.0;
     sums->bad_particle = PARTICLE_NONE;
     for (size_t entry = tile->begin; entry < tile->end; entry++) {
-        prefetch_ahead(run, tile, entry, SECOND_PASS_AHEAD, run->grid.layout.double_count);
+        prefetch_ahead(run, entry, SECOND_PASS_AHEAD, run->grid.layout.double_count);
         run_advance_block(run, scratch, run->grid.tile_blocks[entry], tile, sums, still);
     }
     stage_clock_lap(scratch->clock, STAGE_SECOND_PASS);
+}
+
+/* Tiles that a thread takes at once: neighbours, so that what it fetches ahead is its own, and few
+ * enough that the threads end together. */
+static int tiles_at_once(const struct run *run, size_t colour)
+{
+    enum { MOST = 16, SHARES = 8 };
+    const size_t count = run->grid.colour_begin[colour + 1] - run->grid.colour_begin[colour];
+    const size_t share = count / ((size_t)run->threads * SHARES);
+    return share < 1 ? 1 : share > MOST ? MOST : (int)share;
 }
 
 static void first_pass(struct run *run)
@@ -104,7 +112,7 @@ static void first_pass(struct run *run)
         struct stage_clock *clock = run->scratch[omp_get_thread_num()].clock;
         stage_clock_start(clock);
         for (size_t colour = 0; colour < TILE_COLOURS; colour++) {
-#pragma omp for schedule(dynamic, 1)
+#pragma omp for schedule(dynamic, tiles_at_once(run, colour))
             for (size_t index = run->grid.colour_begin[colour];
                  index < run->grid.colour_begin[colour + 1]; index++)
                 kick_tile(run, &run->grid.tiles[index], clock);
@@ -120,7 +128,7 @@ static void second_pass(struct run *run, bool still)
         struct block_scratch *scratch = &run->scratch[omp_get_thread_num()];
         stage_clock_start(scratch->clock);
         for (size_t colour = 0; colour < TILE_COLOURS; colour++) {
-#pragma omp for schedule(dynamic, 1)
+#pragma omp for schedule(dynamic, tiles_at_once(run, colour))
             for (size_t index = run->grid.colour_begin[colour];
                  index < run->grid.colour_begin[colour + 1]; index++)
                 advance_tile(run, index, scratch, still);
