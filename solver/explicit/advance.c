@@ -214,11 +214,13 @@ static void strain_block(struct run *run, struct block_scratch *scratch,
     if (run->scene.solver.pic_rate > 0 && !still)
         blend_velocity(run, block, scratch, count);
     record_displacement(run, block, scratch, count);
+    fetch_portion(&scratch->ahead);
     stage_clock_lap(scratch->clock, STAGE_GATHER);
     const double jacobian = kinematics_advance(run, block, scratch, time_step);
     if (!(jacobian > 0) && sums->bad_particle == PARTICLE_NONE)
         sums->bad_particle = block->id[scratch->bad_slot];
     sums->least_jacobian = sticky_minimum(sums->least_jacobian, jacobian);
+    fetch_portion(&scratch->ahead);
     stage_clock_lap(scratch->clock, STAGE_KINEMATICS);
 }
 
@@ -229,11 +231,13 @@ static void stress_block(struct run *run, struct block_scratch *scratch,
     const size_t count = (size_t)block->row_count * LANE_COUNT;
     const struct material_outcome outcome =
         material_stage_run(run, block, scratch, still ? 0.0 : run->time_step);
+    fetch_portion(&scratch->ahead);
     if (outcome.flowed)
         kinematics_store(run, block, scratch);
     if (outcome.dissipated)
         book_dissipation(scratch, count, sums);
     record_fields(run, block, scratch, count, outcome.flowed);
+    fetch_portion(&scratch->ahead);
     stage_clock_lap(scratch->clock, STAGE_STORE);
 }
 
@@ -256,6 +260,8 @@ void run_advance_block(struct run *run, struct block_scratch *scratch, uint32_t 
         run_add_energy(run, block, scratch, sums);
     if (!still && (block->eliminates || !(reach.position <= 0.5)))
         collect_crossers(run, block, block_index, scratch, count, &source, tile);
+    while (scratch->ahead.next < scratch->ahead.end)
+        fetch_portion(&scratch->ahead);
     stage_clock_lap(scratch->clock, STAGE_MOVE);
     const struct shape_context context = run_shape_context(run, run->time_step);
     run->kernels->scatter(&context, block, &source,

@@ -46,15 +46,10 @@ static inline real *node_values(const struct node_blocks *nodes, size_t block, u
     return nodes->values + (block * nodes->layout.component_count + component) * LANE_COUNT;
 }
 
-/* Asks for all values of a block before they are needed; inlined by force like
- * particle_block_prefetch. */
-__attribute__((always_inline)) static inline void
-node_block_prefetch(const struct node_blocks *nodes, size_t block)
+/* Bytes of all values of a block. */
+static inline size_t node_block_bytes(const struct node_blocks *nodes)
 {
-    const char *values = (const char *)node_values(nodes, block, 0);
-    const size_t bytes = nodes->layout.component_count * LANE_COUNT * sizeof(real);
-    for (size_t offset = 0; offset < bytes; offset += 64)
-        __builtin_prefetch(values + offset, 0, 2);
+    return nodes->layout.component_count * LANE_COUNT * sizeof(real);
 }
 
 #endif

@@ -71,18 +71,11 @@ static inline real *particle_values(const struct particle_layout *layout,
            (size_t)(layout->first_component[field] + component) * block->row_capacity * LANE_COUNT;
 }
 
-/* Asks for the first `components` components of a block's particles before they are needed: the
- * processor does not guess across blocks. Into the second-level cache: the first has too few places
- * for misses on their way (measured: no gain). Inlined by force: gcc drops the call of a function
- * that only fetches, as one without effect. */
-__attribute__((always_inline)) static inline void
-particle_block_prefetch(const struct particle_block *block, uint32_t component_count)
+/* Bytes of the first `component_count` components. */
+static inline size_t particle_block_bytes(const struct particle_block *block,
+                                          uint32_t component_count)
 {
-    enum { CACHE_LINE = 64 };
-    const char *data = (const char *)block->data;
-    const size_t bytes = (size_t)component_count * block->row_capacity * LANE_COUNT * sizeof(real);
-    for (size_t offset = 0; offset < bytes; offset += CACHE_LINE)
-        __builtin_prefetch(data + offset, 0, 2);
+    return (size_t)component_count * block->row_capacity * LANE_COUNT * sizeof(real);
 }
 
 /* Gives the block a chunk of at least `rows` rows, keeping its particles. 0, or -1 without memory.

@@ -12,7 +12,14 @@ enum { SCRATCH_HISTORY_MAX = 16 };
 
 struct stage_clock; /* explicit/stage_clock.h */
 
+/* Memory that will be needed soon: fetched in small portions between the stages, since a core
+ * waits when it asks for more cache lines than it can have on their way. */
+struct fetch_ahead {
+    const char *next, *end; /* of the particles of a later block */
+};
+
 struct block_scratch {
+    struct fetch_ahead ahead;
     struct stage_clock *clock; /* of the thread, the caller's; NULL: off */
     size_t capacity;           /* slots */
     size_t bad_slot; /* where the last block had a det f <= 0, or NAN; kinematics sets it then */
@@ -42,6 +49,18 @@ struct block_scratch {
     real *compact_history[SCRATCH_HISTORY_MAX];
     real *compact_volume_ratio, *compact_plastic_strain, *compact_dissipation;
 };
+
+/* Asks for the next portion of what `ahead` still holds, into the second-level cache: the first has
+ * too few places for misses on their way. Inlined by force: gcc drops the call of a function that
+ * only fetches, as one without effect. */
+__attribute__((always_inline)) static inline void fetch_portion(struct fetch_ahead *ahead)
+{
+    enum { LINE = 64, PORTION = 12 };
+    const char *next = ahead->next;
+    for (int line = 0; line < PORTION && next < ahead->end; line++, next += LINE)
+        __builtin_prefetch(next, 0, 2);
+    ahead->next = next;
+}
 
 /* Makes room for that many slots; contents are lost. 0, or -1 when memory ran out. */
 int block_scratch_reserve(struct block_scratch *scratch, size_t slots);
