@@ -256,8 +256,11 @@ void run_advance_block(struct run *run, struct block_scratch *scratch, uint32_t 
         damp_bulk(run, block, scratch, count, &source, sums);
     const struct reach reach = move(run, block, scratch, count);
     sums->speed_squared = sticky_maximum(sums->speed_squared, reach.speed_squared);
-    if (run->measures)
+    if (run->measures) {
+        stage_clock_lap(scratch->clock, STAGE_MOVE);
         run_add_energy(run, block, scratch, sums);
+        stage_clock_lap(scratch->clock, STAGE_ENERGY_CHECK);
+    }
     if (!still && (block->eliminates || !(reach.position <= 0.5)))
         collect_crossers(run, block, block_index, scratch, count, &source, tile);
     while (scratch->ahead.next < scratch->ahead.end)

@@ -121,7 +121,8 @@ void bench_time_plain(struct bench *bench, size_t repeat)
 
 static bool stage_is_parallel(size_t stage)
 {
-    return stage == STAGE_FIRST_PASS || (stage >= STAGE_GATHER && stage <= STAGE_WAIT);
+    return stage == STAGE_FIRST_PASS || stage == STAGE_ENERGY_CHECK ||
+           (stage >= STAGE_GATHER && stage <= STAGE_WAIT);
 }
 
 static double slot_count(const struct run *run)
