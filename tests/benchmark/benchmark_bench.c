@@ -261,11 +261,11 @@ static void summarise_bytes(const struct bench *bench, struct benchmark_result *
 {
     const struct particle_layout *layout = &bench->simulation->run.grid.layout;
     const double axes = (double)bench->setup->subject->axis_count;
-    result->bytes_stored = (double)(layout->double_count * sizeof(double) + sizeof(uint32_t) +
+    result->bytes_stored = (double)(layout->double_count * sizeof(real) + sizeof(uint32_t) +
                                     (layout->has_body ? sizeof(uint16_t) : 0));
-    result->bytes_moved = 2.0 * (double)(layout->double_count * sizeof(double));
+    result->bytes_moved = 2.0 * (double)(layout->double_count * sizeof(real));
     if (!bench->setup->last)
-        result->bytes_moved += (3.0 * axes + 1.0) * sizeof(double);
+        result->bytes_moved += (3.0 * axes + 1.0) * sizeof(real);
 }
 
 void bench_summarise(const struct bench *bench, struct benchmark_result *result)

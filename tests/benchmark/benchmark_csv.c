@@ -22,8 +22,9 @@ static void write_header(const struct benchmark_suite *suite, FILE *file)
         (void)strftime(date, sizeof date, "%Y-%m-%d", &calendar);
     (void)fprintf(file, "# talus-benchmark, %s form, %.0f s, %s\n",
                   benchmark_form_word(suite->form), suite->seconds, date);
-    (void)fprintf(file, "# processor: %s\n# build: %s\n# instruction set: %s\n", processor,
-                  talus_build(), benchmark_isa());
+    (void)fprintf(file, "# processor: %s\n# build: %s\n# instruction set: %s, %s precision\n",
+                  processor, talus_build(), benchmark_isa(),
+                  benchmark_is_single() ? "single" : "double");
     for (int kind = 0; kind < CEILING_COUNT; kind++) {
         (void)fprintf(file, "# %s of a core: %.1f with one thread", names[kind],
                       suite->ceilings[kind][0]);

@@ -13,35 +13,33 @@
 /* Says that this process has been started by another program of the benchmark. */
 #define MARK "TALUS_BENCHMARK_STARTED"
 
+#if defined(__x86_64__)
 static bool has_v3(void)
 {
-#if defined(__x86_64__)
     return __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma") &&
            __builtin_cpu_supports("bmi") && __builtin_cpu_supports("bmi2");
-#else
-    return false;
-#endif
 }
 
 static bool has_v4(void)
 {
-#if defined(__x86_64__)
     return has_v3() && __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512vl") &&
            __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512bw") &&
            __builtin_cpu_supports("avx512cd");
-#else
-    return false;
-#endif
 }
+#endif
 
-/* Best first; the plain program has no suffix, and is for all processors. */
+/* Best first; the last one runs everywhere. */
 static const struct variant {
-    const char *name, *suffix;
+    const char *name;
     bool (*available)(void);
 } variants[] = {
-    {"x86-64-v4", "-x86-64-v4", has_v4},
-    {"x86-64-v3", "-x86-64-v3", has_v3},
-    {NULL, "", NULL},
+#if defined(__x86_64__)
+    {"x86-64-v4", has_v4},
+    {"x86-64-v3", has_v3},
+    {"x86-64-v2", NULL},
+#else
+    {"aarch64", NULL},
+#endif
 };
 enum { VARIANT_COUNT = sizeof variants / sizeof variants[0] };
 
@@ -50,19 +48,29 @@ const char *benchmark_isa(void)
     return talus_simulation_isa();
 }
 
-/* Path of this program without the suffix of its instruction set. 0 or -1. */
+bool benchmark_is_single(void)
+{
+    return talus_simulation_precision() == TALUS_PRECISION_SINGLE;
+}
+
+/* Takes "-END" off the end of a path, if it is there. */
+static void cut_end(char *path, const char *end)
+{
+    const size_t length = strlen(path), tail = strlen(end) + 1;
+    if (length > tail && path[length - tail] == '-' && strcmp(path + length - tail + 1, end) == 0)
+        path[length - tail] = '\0';
+}
+
+/* Path of the program for double precision and any processor. 0 or -1. */
 static int plain_path(char *path, size_t size)
 {
     const ssize_t length = readlink("/proc/self/exe", path, size - 1);
     if (length <= 0)
         return -1;
     path[length] = '\0';
-    for (size_t index = 0; index < VARIANT_COUNT; index++) {
-        const size_t suffix = strlen(variants[index].suffix);
-        if (suffix > 0 && strlen(path) > suffix &&
-            strcmp(path + strlen(path) - suffix, variants[index].suffix) == 0)
-            path[strlen(path) - suffix] = '\0';
-    }
+    for (size_t index = 0; index < VARIANT_COUNT; index++)
+        cut_end(path, variants[index].name);
+    cut_end(path, "single");
     return 0;
 }
 
@@ -73,22 +81,27 @@ static bool set_threads(void)
            setenv("OMP_PLACES", "cores", 0) == 0 && setenv("GOMP_SPINCOUNT", "20000", 0) == 0;
 }
 
-int benchmark_isa_switch(const char *wanted, char **arguments)
+int benchmark_isa_switch(const char *wanted, bool single, char **arguments)
 {
-    char path[PATH_MAX], better[PATH_MAX + 32];
+    char path[PATH_MAX], program[PATH_MAX + 32];
     if (getenv(MARK) != NULL)
-        return wanted == NULL || strcmp(wanted, benchmark_isa()) == 0 ? 0 : -1;
+        return (wanted == NULL || strcmp(wanted, benchmark_isa()) == 0) &&
+                       single == benchmark_is_single()
+                   ? 0
+                   : -1;
     if (plain_path(path, sizeof path) != 0 || !set_threads())
         return -1;
     for (size_t index = 0; index < VARIANT_COUNT; index++) {
         const struct variant *variant = &variants[index];
-        const bool meant =
-            wanted == NULL || variant->name == NULL || strcmp(wanted, variant->name) == 0;
-        if (!meant || (variant->available != NULL && !variant->available()))
+        if ((wanted != NULL && strcmp(wanted, variant->name) != 0) ||
+            (variant->available != NULL && !variant->available()))
             continue;
-        (void)snprintf(better, sizeof better, "%s%s", path, variant->suffix);
-        if (access(better, X_OK) == 0)
-            (void)execv(better, arguments);
+        (void)snprintf(program, sizeof program, "%s%s-%s", path, single ? "-single" : "",
+                       variant->name);
+        if (access(program, X_OK) == 0)
+            (void)execv(program, arguments);
+        if (!single && index + 1 == VARIANT_COUNT)
+            (void)execv(path, arguments);
     }
     return -1;
 }

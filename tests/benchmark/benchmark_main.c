@@ -27,7 +27,8 @@ static int measure_all(const struct benchmark_options *options)
     struct benchmark_suite suite;
     char slug[128], path[PATH_MAX];
     benchmark_processor_slug(slug, sizeof slug);
-    (void)snprintf(path, sizeof path, "%s/%s.csv", options->folder, slug);
+    (void)snprintf(path, sizeof path, "%s/%s%s.csv", options->folder, slug,
+                   options->single ? "-single" : "");
     bool good = benchmark_suite_run(&suite, options->form);
     benchmark_table_print(&suite);
     good = good && benchmark_csv_write(&suite, options->path != NULL ? options->path : path);
@@ -40,9 +41,10 @@ int main(int argument_count, char **arguments)
     struct benchmark_options options;
     if (!benchmark_options_read(argument_count, arguments, &options))
         return 2;
-    if (benchmark_isa_switch(options.isa, arguments) != 0) {
-        (void)fprintf(stderr, "talus-benchmark: no program for the instruction set '%s'\n",
-                      options.isa == NULL ? "of this machine" : options.isa);
+    if (benchmark_isa_switch(options.isa, options.single, arguments) != 0) {
+        (void)fprintf(stderr, "talus-benchmark: no program for %s precision and %s\n",
+                      options.single ? "single" : "double",
+                      options.isa == NULL ? "this machine" : options.isa);
         return 2;
     }
     return options.whole ? measure_all(&options) : measure_one(&options);

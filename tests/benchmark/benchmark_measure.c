@@ -3,6 +3,7 @@
 
 #include "benchmark_bench.h"
 #include "benchmark_clock.h"
+#include "benchmark_isa.h"
 
 #include <stdlib.h>
 
@@ -10,7 +11,8 @@
 static void probe(const struct ceiling *ceiling, struct bench *bench, size_t repeat)
 {
     const int threads = bench->setup->threads;
-    bench->peak[repeat] = ceiling_measure(ceiling, CEILING_DOUBLE, threads, 1);
+    const enum ceiling_kind kind = benchmark_is_single() ? CEILING_FLOAT : CEILING_DOUBLE;
+    bench->peak[repeat] = ceiling_measure(ceiling, kind, threads, 1);
     bench->bandwidth[repeat] = ceiling_measure(ceiling, CEILING_IN_PLACE, threads, 1);
 }
 

@@ -22,12 +22,12 @@ struct benchmark_result {
     double wall_nanoseconds, wall_fastest;
     /* [ns] per particle-step, summed over threads; medians, without the cost of the clock */
     double stage_nanoseconds[STAGE_COUNT];
-    double clock_share;  /* what the stage clock adds to the time of a step */
-    double relative;     /* rate per core over that of the first of the set, repeat by repeat */
-    double time_step;    /* [s] mean */
-    double simulated;    /* simulated seconds per second of processor time */
-    double peak;         /* [GFLOP/s] of a core in the same repeats, double precision */
-    double bandwidth;    /* [GB/s] of a core in the same repeats, in place */
+    double clock_share; /* what the stage clock adds to the time of a step */
+    double relative;    /* rate per core over that of the first of the set, repeat by repeat */
+    double time_step;   /* [s] mean */
+    double simulated;   /* simulated seconds per second of processor time */
+    double peak;      /* [GFLOP/s] of a core in the same repeats, in the precision of the program */
+    double bandwidth; /* [GB/s] of a core in the same repeats, in place */
     double bytes_stored; /* per particle: its values and ids */
     double bytes_grid;   /* per particle: all that the grid holds, capacities and nodes included */
     double bytes_all;    /* per particle: all that has been allocated, touched or not */

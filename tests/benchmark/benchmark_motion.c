@@ -36,7 +36,7 @@ static void set_block(const struct run *run, const struct particle_block *block,
         }
         field_at(run, position, amplitude, velocity);
         for (uint32_t axis = 0; axis < domain->axis_count; axis++)
-            particle_values(layout, block, PARTICLE_VELOCITY, axis)[slot] = velocity[axis];
+            particle_values(layout, block, PARTICLE_VELOCITY, axis)[slot] = (real)velocity[axis];
     }
 }
 

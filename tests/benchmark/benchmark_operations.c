@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 #include "benchmark_operations.h"
 
+#include "benchmark_isa.h"
+
 #include <math.h>
 #include <string.h>
 
@@ -15,6 +17,8 @@ static const struct {
 
 double benchmark_operations(const struct benchmark_setup *setup)
 {
+    if (benchmark_is_single())
+        return NAN; /* counted in double precision only */
     for (size_t index = 0; index < sizeof counts / sizeof counts[0]; index++) {
         if (strcmp(counts[index].name, setup->subject->name) == 0 &&
             strcmp(counts[index].ordering, benchmark_ordering_word(setup)) == 0 &&

@@ -11,11 +11,13 @@
 static void print_usage(void)
 {
     (void)fputs(
-        "usage: talus-benchmark --short|--full|--smoke [--csv FILE | --results FOLDER] [--isa I]\n"
+        "usage: talus-benchmark --short|--full|--smoke [--csv FILE | --results FOLDER]\n"
+        "                       [--precision double|single] [--isa I]\n"
         "       talus-benchmark --case NAME [--body compact|flow] [--particles N] [--per-axis N]\n"
         "                       [--threads T] [--ordering last|modified_last]\n"
         "                       [--anti-locking none|cell] [--domain FACTOR] [--courant C]\n"
-        "                       [--steps N] [--repeats N] [--isa x86-64-v4|x86-64-v3|x86-64-v2]\n"
+        "                       [--steps N] [--repeats N] [--precision double|single]\n"
+        "                       [--isa x86-64-v4|x86-64-v3|x86-64-v2]\n"
         "cases:",
         stderr);
     for (size_t index = 0; index < benchmark_case_count; index++)
@@ -53,6 +55,7 @@ static bool read_option(struct benchmark_options *options, int letter, const cha
     static const char *const bodies[2] = {"compact", "flow"};
     static const char *const orderings[2] = {"modified_last", "last"};
     static const char *const controls[2] = {"none", "cell"};
+    static const char *const precisions[2] = {"double", "single"};
     struct benchmark_setup *setup = &options->setup;
     size_t count = 1;
     bool second = false, good = true;
@@ -98,6 +101,8 @@ static bool read_option(struct benchmark_options *options, int letter, const cha
     case 'f':
         options->folder = text;
         return *text != '\0';
+    case 'q':
+        return read_word(text, precisions, &options->single);
     case 'i':
         options->isa = text;
         return true;
@@ -125,6 +130,7 @@ bool benchmark_options_read(int argument_count, char **arguments, struct benchma
                                           {"csv", required_argument, NULL, 'v'},
                                           {"results", required_argument, NULL, 'f'},
                                           {"isa", required_argument, NULL, 'i'},
+                                          {"precision", required_argument, NULL, 'q'},
                                           {NULL, 0, NULL, 0}};
     int letter = 0;
     *options = (struct benchmark_options){

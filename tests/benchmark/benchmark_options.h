@@ -12,6 +12,7 @@ struct benchmark_options {
     const char *folder;
     struct benchmark_setup setup; /* otherwise one measurement */
     struct benchmark_effort effort;
+    bool single;     /* precision */
     const char *isa; /* NULL: the best */
 };
 

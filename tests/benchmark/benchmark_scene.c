@@ -3,6 +3,7 @@
 
 #include "scene/scene_json.h"
 #include "state/lanes.h"
+#include "talus/simulation.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -210,6 +211,7 @@ bool benchmark_scene_create(const struct benchmark_setup *setup, struct benchmar
         return false;
     }
     const bool read = read_scene(root, &made->scene);
+    made->scene.solver.precision = talus_simulation_precision();
     json_decref(root);
     return read;
 }

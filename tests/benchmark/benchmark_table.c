@@ -15,7 +15,8 @@ static void print_machine(const struct benchmark_suite *suite)
     static const char *const units[CEILING_COUNT] = {"GFLOP/s", "GFLOP/s", "GB/s", "GB/s"};
     char processor[256];
     benchmark_processor(processor, sizeof processor);
-    (void)printf("%s, %s, %s\n", processor, benchmark_isa(), talus_build());
+    (void)printf("%s, %s, %s precision, %s\n", processor, benchmark_isa(),
+                 benchmark_is_single() ? "single" : "double", talus_build());
     for (int kind = 0; kind < CEILING_COUNT; kind++) {
         (void)printf("  %-9s %7.1f %s of a core", names[kind], suite->ceilings[kind][0],
                      units[kind]);

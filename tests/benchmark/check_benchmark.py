@@ -11,6 +11,8 @@ import sys
 import tempfile
 
 PROGRAM = os.environ["TALUS_BENCHMARK"]
+PRECISION = sys.argv[1]
+MASS_ERROR = {"double": 1e-12, "single": 1e-6}[PRECISION]  # what audits let pass
 SOURCE = (pathlib.Path(__file__).parent / "benchmark_case.c").read_text()
 SETS = {"ordering", "size", "density", "anti_locking", "domain", "small", "flow"}
 # Case -> whether it must yield, out of the program's own table.
@@ -39,7 +41,7 @@ def check_row(row, value):
     if math.isnan(value["rate"]):
         expect(False, f"{name}: no rate")
         return
-    expect(value["mass_error"] <= 1e-12, f"{name}: mass error {value['mass_error']}")
+    expect(value["mass_error"] <= MASS_ERROR, f"{name}: mass error {value['mass_error']}")
     expect(0 < value["rate_low"] <= value["rate"] <= value["rate_high"] <= value["rate_best"],
            f"{name}: rates are out of order")
     expect(value["rate_wall"] > 0 and value["simulated"] > 0, f"{name}: no time has passed")
@@ -94,7 +96,7 @@ def check_equal_physics(rows):
 
 
 def check_header(comments):
-    for word in ("processor: ", "build: ", "instruction set: ", "peak, double", "peak, float",
+    for word in ("processor: ", "build: ", "instruction set: ", PRECISION + " precision", "peak, double", "peak, float",
                  "triad", "in place"):
         expect(any(word in line for line in comments), f"header: no {word}")
     for word in ("two threads", "cell anti-locking costs", "a grid of 10000 times",
@@ -107,7 +109,7 @@ def check_header(comments):
 def main():
     with tempfile.TemporaryDirectory() as folder:
         path = pathlib.Path(folder) / "results.csv"
-        run = subprocess.run([PROGRAM, "--smoke", "--csv", path], capture_output=True, text=True)
+        run = subprocess.run([PROGRAM, "--smoke", "--precision", PRECISION, "--csv", path], capture_output=True, text=True)
         expect(run.returncode == 0, f"exit {run.returncode}: {run.stderr[-2000:]}")
         text = path.read_text().splitlines(True) if path.exists() else []
     rows = list(csv.DictReader(line for line in text if not line.startswith("#")))
