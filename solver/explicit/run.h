@@ -74,6 +74,13 @@ struct tile_sums {
     double kinetic, strain, potential;     /* where run->measures, and by run_measure_energy [J] */
 };
 
+/* What a chunk of node blocks adds up in the node update; summed over the chunks in order. */
+struct node_sums {
+    double mass;               /* of nodes that move [kg] */
+    double damping_impulse[3]; /* of local damping on the material [N s] */
+    double damping_energy;     /* that it takes [J] */
+};
+
 struct run_energy {
     double kinetic, strain, potential;                  /* [J] now */
     double plastic, viscous, damping, wall, eliminated; /* [J] accumulated */
@@ -111,13 +118,16 @@ struct run {
     struct wall_node *wall_nodes; /* [wall_node_count] owned, in order of node blocks */
     size_t wall_node_count, wall_node_capacity;
     size_t walled_block_count; /* node blocks already looked at */
+    size_t marked_block_count; /* particle blocks that know whether they have walls */
     bool *block_walled;        /* [walled_block_count]: has wall nodes; owned */
     size_t block_walled_capacity;
     struct wall_record *faces;      /* [walls.face_count] owned */
     struct wall_record *boundaries; /* [scene.boundary_count] owned */
     struct peak_window *windows;    /* [face_count + boundary_count] owned */
-    double *wall_partials;          /* owned, see node_update.c */
+    double *wall_partials;          /* owned, see node_passes.h */
     size_t wall_partial_capacity;
+    struct node_sums *node_sums; /* [node_sums_capacity] owned */
+    size_t node_sums_capacity;
 
     struct block_scratch *scratch; /* [threads] owned */
     struct outbox_record *outbox;  /* [initial particle count] owned; touched only where used */
@@ -150,9 +160,11 @@ static inline struct shape_context run_shape_context(struct run *run, double tim
 /* Share of gravity that acts now: 1, or less during the force ramp. */
 double run_force_factor(const struct run *run);
 
-/* ---- node_update.c ---- */
+/* ---- wall_nodes.c ---- */
 /* Finds the walls of node blocks that are new, and which blocks touch them. 0, or -1. */
 int run_find_walls(struct run *run);
+
+/* ---- node_update.c ---- */
 void run_kick_nodes(struct run *run);
 void run_update_nodes(struct run *run);
 

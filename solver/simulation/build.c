@@ -235,6 +235,7 @@ void run_release(struct run *run)
     free(run->boundaries);
     free(run->windows);
     free(run->wall_partials);
+    free(run->node_sums);
     free(run->scratch);
     free(run->outbox);
     free(run->tile_sums);

@@ -1,0 +1,39 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* What the passes over nodes share: free nodes (node_update.c), and those with walls
+ * (wall_nodes.c finds them, wall_update.c applies them). Sums go through chunks of fixed size that
+ * are added in order, so that they have the same bits for any number of threads. */
+#ifndef TALUS_NODE_PASSES_H
+#define TALUS_NODE_PASSES_H
+
+#include "explicit/run.h"
+
+enum { NODE_CHUNK = 256, WALL_CHUNK = 128 }; /* node blocks, wall nodes */
+/* Per chunk and face: impulse 3, moment 3, area; after the faces of a chunk: impulse of the walls
+ * on the material 3, its magnitude, work of friction; what the walls change of local damping:
+ * energy, impulse 3. */
+enum { FACE_SUMS = 7, CHUNK_SUMS = 9 };
+
+static inline size_t wall_partial_stride(const struct run *run)
+{
+    return run->walls.face_count * FACE_SUMS + CHUNK_SUMS;
+}
+
+static inline size_t wall_chunk_count(const struct run *run)
+{
+    return (run->wall_node_count + WALL_CHUNK - 1) / WALL_CHUNK;
+}
+
+static inline size_t node_chunk_count(const struct run *run)
+{
+    return (run->grid.nodes.count + NODE_CHUNK - 1) / NODE_CHUNK;
+}
+
+/* Before the first pass: holds back what walls hold, at wall nodes begin ... end - 1. `factor` is
+ * the share of gravity that acts. */
+void wall_nodes_hold_back(struct run *run, size_t begin, size_t end, double factor);
+/* Applies the walls at the wall nodes of a chunk and sums what they did into its partial. */
+void wall_nodes_update(struct run *run, size_t chunk, double factor);
+/* Adds the chunks in order, to faces, boundaries and the audit. */
+void wall_nodes_sum(struct run *run);
+
+#endif
