@@ -255,7 +255,7 @@ void run_advance_block(struct run *run, struct block_scratch *scratch, uint32_t 
     if (run->scene.solver.viscous_damping > 0)
         damp_bulk(run, block, scratch, count, &source, sums);
     const struct reach reach = move(run, block, scratch, count);
-    sums->speed_squared = sticky_maximum(sums->speed_squared, reach.speed_squared);
+    run_note_speed(run, scratch->materials, reach.speed_squared, sums);
     if (run->measures) {
         stage_clock_lap(scratch->clock, STAGE_MOVE);
         run_add_energy(run, block, scratch, sums);

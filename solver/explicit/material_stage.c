@@ -322,6 +322,7 @@ struct material_outcome material_stage_run(struct run *run, const struct particl
     const bool averages_stress =
         averages && run->scene.solver.anti_locking_apply == TALUS_APPLY_STRAIN_AND_STRESS;
     const uint64_t present = materials_present(run, block);
+    scratch->materials = present;
     const bool single = is_single(present);
     if (!single)
         clear_results(run, scratch, count);

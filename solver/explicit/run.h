@@ -68,6 +68,8 @@ struct peak_window {
 /* What one tile adds up in the second pass; summed over the tiles in order. */
 struct tile_sums {
     double speed_squared;                  /* largest [m^2/s^2] */
+    double signal_speed;                   /* largest c + |v| [m/s] */
+    uint64_t materials;                    /* bit set: with particles */
     double least_jacobian;                 /* smallest det of an incremental deformation gradient */
     uint32_t bad_particle;                 /* id of one where that is not positive, or NONE */
     double plastic_energy, viscous_energy; /* dissipated in the step [J] */
@@ -138,10 +140,12 @@ struct run {
 
     double time, time_step, critical_time_step, last_time_step, interval;
     uint64_t step;
-    double largest_speed;     /* of particles, after the last step [m/s] */
-    double checked_speed;     /* when energy was last checked */
-    double mass_cutoff;       /* nodes lighter than this carry no motion [kg] */
-    double reference_density; /* smallest of the scene, for contact areas [kg/m^3] */
+    double largest_speed;       /* of particles, after the last step [m/s] */
+    double signal_speed;        /* largest c + |v| of particles, after the last step [m/s] */
+    uint64_t materials_present; /* bit set: with particles, after the last step */
+    double checked_speed;       /* when energy was last checked */
+    double mass_cutoff;         /* nodes lighter than this carry no motion [kg] */
+    double reference_density;   /* smallest of the scene, for contact areas [kg/m^3] */
     bool over_critical_warned, failed;
 
     bool sample_expected; /* at the end of the next step */
@@ -185,8 +189,12 @@ void run_book_eliminated_energy(struct run *run, const struct particle_record *r
                                 const double position[3]);
 
 /* ---- time_step.c ---- */
-/* Critical step now, from wave speed, velocity, viscosity and method. */
-double run_critical_time_step(const struct run *run, double speed);
+/* Critical step for the largest sum of wave speed and velocity, and for a bit set of materials,
+ * whose viscosities count. */
+double run_critical_time_step(const struct run *run, double signal_speed, uint64_t materials);
+/* Books the fastest particle of a block with these materials. */
+void run_note_speed(const struct run *run, uint64_t materials, double speed_squared,
+                    struct tile_sums *sums);
 void run_choose_time_step(struct run *run);
 
 /* ---- step.c ---- */

@@ -160,6 +160,8 @@ static struct tile_sums sum_tiles(const struct run *run)
     for (size_t index = 0; index < run->grid.tile_count; index++) {
         const struct tile_sums *sums = &run->tile_sums[index];
         total.speed_squared = sticky_maximum(total.speed_squared, sums->speed_squared);
+        total.signal_speed = fmax(total.signal_speed, sums->signal_speed);
+        total.materials |= sums->materials;
         total.least_jacobian = sticky_minimum(total.least_jacobian, sums->least_jacobian);
         if (total.bad_particle == PARTICLE_NONE)
             total.bad_particle = sums->bad_particle;
@@ -201,6 +203,8 @@ enum talus_status run_take_step(struct run *run, struct talus_error *error)
     run->last_time_step = run->time_step;
     run->step++;
     const struct tile_sums sums = sum_tiles(run);
+    run->signal_speed = sums.signal_speed;
+    run->materials_present = sums.materials;
     run->energy.plastic += sums.plastic_energy;
     run->energy.viscous += sums.viscous_energy;
     if (run->measures)
@@ -233,6 +237,8 @@ enum talus_status run_start(struct run *run, struct talus_error *error)
     second_pass(run, true);
     const struct tile_sums sums = sum_tiles(run);
     run->largest_speed = sqrt(sums.speed_squared);
+    run->signal_speed = sums.signal_speed;
+    run->materials_present = sums.materials;
     run_choose_time_step(run);
     run_measure_energy(run);
     run->audit.initial_stored = run->energy.kinetic + run->energy.strain;

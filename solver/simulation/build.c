@@ -165,13 +165,22 @@ static enum talus_status refuse_mixed_elimination(const struct talus_scene *scen
     return TALUS_OK;
 }
 
+static double fastest_wave(const struct run *run)
+{
+    double wave = 0;
+    for (size_t index = 0; index < run->scene.body_count; index++)
+        wave = fmax(wave, run->materials[run->body_material[index]].wave_speed);
+    return wave;
+}
+
 /* The ring of a running mean holds the steps of a window, with room for steps four times shorter.
  */
 static enum talus_status build_windows(struct run *run, struct talus_error *error)
 {
     const double step = run->scene.solver.time_step > 0
                             ? run->scene.solver.time_step
-                            : run->scene.solver.courant * run_critical_time_step(run, 0) / 4;
+                            : run->scene.solver.courant *
+                                  run_critical_time_step(run, fastest_wave(run), UINT64_MAX) / 4;
     const size_t windows = run->walls.face_count + run->scene.boundary_count;
     for (size_t index = 0; index < windows; index++) {
         const size_t boundary = index < run->walls.face_count

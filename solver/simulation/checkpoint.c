@@ -7,7 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { CHECKPOINT_VERSION = 3, BLOB_COUNT = 10 };
+enum { CHECKPOINT_VERSION = 4, BLOB_COUNT = 10 };
 
 struct checkpoint_header {
     uint32_t version, double_count, node_component_count, lane_count;
@@ -16,7 +16,8 @@ struct checkpoint_header {
     uint64_t scene; /* fingerprint */
     uint32_t row_max, over_critical_warned;
     double time, time_step, critical_time_step, last_time_step, interval, duration;
-    double largest_speed, checked_speed, mass_cutoff;
+    double largest_speed, signal_speed, checked_speed, mass_cutoff;
+    uint64_t materials_present;
     struct run_energy energy;
     struct run_audit audit;
 };
@@ -55,6 +56,8 @@ static struct checkpoint_header make_header(const struct talus_simulation *simul
     header.interval = run->interval;
     header.duration = run->scene.duration;
     header.largest_speed = run->largest_speed;
+    header.signal_speed = run->signal_speed;
+    header.materials_present = run->materials_present;
     header.checked_speed = run->checked_speed;
     header.mass_cutoff = run->mass_cutoff;
     header.energy = run->energy;
@@ -293,6 +296,8 @@ static void restore_header(struct run *run, const struct checkpoint_header *head
     run->interval = header->interval;
     run->scene.duration = header->duration;
     run->largest_speed = header->largest_speed;
+    run->signal_speed = header->signal_speed;
+    run->materials_present = header->materials_present;
     run->checked_speed = header->checked_speed;
     run->mass_cutoff = header->mass_cutoff;
     run->energy = header->energy;

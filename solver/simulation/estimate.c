@@ -7,14 +7,18 @@
 #include <math.h>
 #include <string.h>
 
-static double fastest_body(const struct talus_scene *scene)
+static double critical_at_start(const struct run *run)
 {
-    double fastest = 0;
-    for (size_t index = 0; index < scene->body_count; index++) {
-        const double *v = scene->bodies[index].velocity;
-        fastest = fmax(fastest, sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]));
+    double signal_speed = 0;
+    uint64_t materials = 0;
+    for (size_t index = 0; index < run->scene.body_count; index++) {
+        const double *v = run->scene.bodies[index].velocity;
+        const size_t material = run->body_material[index];
+        signal_speed = fmax(signal_speed, run->materials[material].wave_speed +
+                                              sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]));
+        materials |= (uint64_t)1 << material;
     }
-    return fastest;
+    return run_critical_time_step(run, signal_speed, materials);
 }
 
 static uint64_t saturate(double value)
@@ -47,7 +51,7 @@ enum talus_status talus_simulation_estimate(const struct talus_scene *scene,
     }
     seeding_count(scene, &estimate->particle_count, &estimate->active_cell_count);
     estimate->useful_threads = threads_that_pay(estimate->particle_count, INT_MAX);
-    const double critical = run_critical_time_step(&run, fastest_body(scene));
+    const double critical = critical_at_start(&run);
     const double fixed = scene->solver.time_step;
     estimate->critical_time_step = critical;
     estimate->time_step = fixed > 0 ? fixed : scene->solver.courant * critical;

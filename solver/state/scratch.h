@@ -7,6 +7,7 @@
 #include "math/real.h"
 
 #include <stddef.h>
+#include <stdint.h>
 
 enum { SCRATCH_HISTORY_MAX = 16 };
 
@@ -22,8 +23,9 @@ struct block_scratch {
     struct fetch_ahead ahead;
     struct stage_clock *clock; /* of the thread, the caller's; NULL: off */
     size_t capacity;           /* slots */
-    size_t bad_slot; /* where the last block had a det f <= 0, or NAN; kinematics sets it then */
-    void *memory;    /* owned; every array below lies in it, aligned to 64 bytes */
+    uint64_t materials; /* bit set: with particles in the block; the material stage sets it */
+    size_t bad_slot;    /* where the last block had a det f <= 0, or NAN; kinematics sets it then */
+    void *memory;       /* owned; every array below lies in it, aligned to 64 bytes */
     /* gather writes */
     real *gradient[9];     /* g_ab = dt dv_a/dx_b at 3 a + b [1]; free once the material runs */
     real *displacement[3]; /* of the step, in cell widths */

@@ -281,9 +281,45 @@ static void test_energy_and_reaction(void **state)
     talus_simulation_destroy(simulation);
 }
 
+/* Energies that the step added up along the way are those that a pass of its own finds, and the
+ * run is the same. */
+static void test_expected_samples(void **state)
+{
+    (void)state;
+    struct simulation_fixture fixture;
+    build(&fixture);
+    struct talus_simulation *expecting = simulation_fixture_start(&fixture, 2);
+    struct talus_simulation *surprised = simulation_fixture_start(&fixture, 1);
+    for (size_t step = 1; step <= 70; step++) {
+        talus_simulation_expect_sample(expecting);
+        simulation_run_steps(expecting, 1);
+        simulation_run_steps(surprised, 1);
+        if (step % 7 != 0)
+            continue;
+        double *one = sample(expecting), *other = sample(surprised);
+        size_t count = 0;
+        (void)talus_simulation_columns(expecting, &count);
+        const double scale = column(surprised, other, "energy.kinetic") +
+                             column(surprised, other, "energy.strain") +
+                             fabs(column(surprised, other, "energy.potential"));
+        assert_true(column(surprised, other, "energy.strain") > 1e-6 * scale);
+        for (size_t index = 0; index < count; index++)
+            assert_close(one[index], other[index], 1e-12, fmax(scale, fabs(other[index])));
+        free(one);
+        free(other);
+    }
+    assert_int_equal(talus_simulation_state_hash(expecting),
+                     talus_simulation_state_hash(surprised));
+    assert_true(simulation_metric(expecting, "energy_error") ==
+                simulation_metric(surprised, "energy_error"));
+    talus_simulation_destroy(expecting);
+    talus_simulation_destroy(surprised);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_expected_samples),
         cmocka_unit_test(test_geometry),
         cmocka_unit_test(test_sums),
         cmocka_unit_test(test_point_follows_its_particle),
