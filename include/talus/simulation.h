@@ -45,7 +45,7 @@ struct talus_simulation_state {
     size_t particle_count;     /* alive */
     size_t initial_particle_count;
     size_t active_cell_count;
-    size_t memory_bytes;    /* held by the simulation */
+    size_t memory_bytes;    /* held by the simulation, the last checkpoint included */
     double eliminated_mass; /* [kg] */
     bool finished;          /* time has reached duration */
 };

@@ -24,6 +24,8 @@ static const double rate_uncertainty = 3.0;
 static const double step_overhead = 5e-6;   /* [s] of a step without particles, per thread */
 static const double frame_byte_rate = 50e6; /* [bytes/s] written, compressed and synchronised */
 static const double start_seconds = 0.1;
+/* Captured, waiting and being written, at most (worker/background_writer.h). */
+static const double frames_in_flight = 4.0;
 static const double process_bytes = 20e6; /* of the worker without a simulation */
 
 static double plastic_share(const struct talus_scene *scene)
@@ -124,8 +126,10 @@ json_t *scene_forecast(const struct talus_scene *scene, int threads, struct talu
         return NULL;
     double checkpoint = (double)estimate.particle_count * (double)estimate.bytes_per_particle;
     double written = frame_bytes(scene, (double)estimate.particle_count) + history_bytes(scene);
-    double memory = (double)estimate.memory_bytes + process_bytes +
-                    8.0 * frame_components(scene) * (double)estimate.particle_count;
+    double copies =
+        frames_in_flight * 8.0 * frame_components(scene) * (double)estimate.particle_count +
+        (scene->output.checkpoint_every > 0.0 ? checkpoint : 0.0);
+    double memory = (double)estimate.memory_bytes + process_bytes + copies;
     double wall = wall_seconds(scene, &estimate, threads, written);
     json_t *forecast = json_pack(
         "{s:o, s:o, s:f, s:f, s:o, s:o, s:o, s:o, s:o, s:i, s:{s:f, s:f, s:f}}", "particles",

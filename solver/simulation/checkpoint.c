@@ -190,7 +190,7 @@ const struct talus_blob *talus_simulation_checkpoint(struct talus_simulation *si
     save_blocks(run, (struct checkpoint_block *)(void *)data[1], data[2]);
     save_windows(run, data[7]);
     save_wall_impulses(run, data[9]);
-    *count = BLOB_COUNT;
+    *count = simulation->blob_count = BLOB_COUNT;
     return simulation->blobs;
 }
 

@@ -32,12 +32,6 @@ static size_t number_bytes(const struct talus_scene *scene)
     return scene->solver.precision == TALUS_PRECISION_SINGLE ? sizeof(float) : sizeof(double);
 }
 
-static double particle_bytes(const struct particle_layout *layout, size_t number)
-{
-    return (double)(layout->double_count * number + sizeof(uint32_t) +
-                    (layout->has_body ? sizeof(uint16_t) : 0));
-}
-
 enum talus_status talus_simulation_estimate(const struct talus_scene *scene,
                                             struct talus_estimate *estimate,
                                             struct talus_error *error)
@@ -56,16 +50,11 @@ enum talus_status talus_simulation_estimate(const struct talus_scene *scene,
     estimate->critical_time_step = critical;
     estimate->time_step = fixed > 0 ? fixed : scene->solver.courant * critical;
     estimate->step_count = saturate(ceil(scene->duration / estimate->time_step * (1 - 1e-12)));
-    const double per_particle = particle_bytes(&run.grid.layout, number_bytes(scene));
-    estimate->bytes_per_particle = (uint64_t)per_particle;
-    const double per_node = (double)(run.grid.nodes.layout.component_count * number_bytes(scene));
-    /* Blocks are as wide as vectors of 32 bytes. */
-    const double block_count =
-        (double)(estimate->active_cell_count * number_bytes(scene)) / sizeof(lanes);
-    /* Chunks are a quarter too large on average; nodes double when they grow. */
-    estimate->memory_bytes =
-        saturate(1.4 * per_particle * (double)estimate->particle_count +
-                 2.5 * per_node * (double)estimate->active_cell_count + 200 * block_count + 4e6);
+    estimate->bytes_per_particle =
+        (uint64_t)layout_particle_bytes(&run.grid.layout, number_bytes(scene));
+    estimate->memory_bytes = saturate(
+        simulation_memory_estimate(&run, number_bytes(scene), (double)estimate->particle_count,
+                                   (double)estimate->active_cell_count));
     run_release(&run);
     if (fixed > critical && !scene->solver.allow_unstable)
         return talus_error_set(error, TALUS_INVALID, "over_critical", "/solver/time_step",

@@ -284,7 +284,7 @@ void talus_simulation_get_state(const struct talus_simulation *simulation,
     *state = clock_of(run);
     state->particle_count = sparse_grid_particle_count(&run->grid);
     state->active_cell_count = sparse_grid_active_cells(&run->grid);
-    state->memory_bytes = sparse_grid_memory(&run->grid);
+    state->memory_bytes = simulation_memory(simulation);
 }
 
 enum talus_status talus_simulation_set_duration(struct talus_simulation *simulation,

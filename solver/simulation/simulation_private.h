@@ -50,6 +50,14 @@ void run_release(struct run *run);
 /* Which fields the scene stores. */
 void run_layout(const struct talus_scene *scene, struct particle_layout *layout);
 
+/* ---- memory.c ---- */
+size_t simulation_memory(const struct talus_simulation *simulation);
+/* What a particle stores, with numbers of so many bytes. */
+double layout_particle_bytes(const struct particle_layout *layout, size_t number);
+/* Bytes that so many particles in so many cells will take, with one thread. */
+double simulation_memory_estimate(const struct run *run, size_t number, double particles,
+                                  double cells);
+
 /* ---- columns.c ---- */
 int simulation_make_columns(struct talus_simulation *simulation);
 

@@ -45,6 +45,42 @@ static void test_critical_step(void **state)
     }
 }
 
+/* The estimate is the memory of the run, from above and not by much, in two and three dimensions,
+ * for a block, a plate and a tower. */
+static void test_memory(void **state)
+{
+    (void)state;
+    static const double sizes[4][3] = {
+        {2.0, 2.0, 2.0}, {3.8, 3.8, 0.4}, {0.8, 3.8, 0.8}, {3.6, 2.0, 3.0}};
+    for (size_t axes = 2; axes <= 3; axes++) {
+        for (size_t shape = 0; shape < 4; shape++) {
+            struct simulation_fixture fixture;
+            struct talus_estimate estimate;
+            struct talus_error error = {0};
+            simulation_fixture_init(&fixture, axes, 0.1, (const int64_t[3]){40, 40, 40});
+            const size_t material =
+                simulation_fixture_add_sample(&fixture, material_find("drucker_prager_cap"));
+            double end[3];
+            for (size_t axis = 0; axis < 3; axis++)
+                end[axis] = 0.1 + sizes[shape][axis];
+            simulation_fixture_add_box(&fixture, material, (const double[3]){0.1, 0.1, 0.1}, end,
+                                       axes == 2 ? 4 : 2);
+            assert_int_equal(talus_simulation_estimate(&fixture.scene, &estimate, &error),
+                             TALUS_OK);
+            struct talus_simulation *simulation = simulation_fixture_start(&fixture, 1);
+            struct talus_simulation_state now;
+            simulation_run_steps(simulation, 3);
+            talus_simulation_get_state(simulation, &now);
+            const double share = (double)now.memory_bytes / (double)estimate.memory_bytes;
+            /* The rest is what doubles when it grows, and a last page of 2 MiB. */
+            if (!(share <= 1 && share >= 0.6))
+                fail_msg("%zu axes, shape %zu: %zu of %llu bytes", axes, shape, now.memory_bytes,
+                         (unsigned long long)estimate.memory_bytes);
+            talus_simulation_destroy(simulation);
+        }
+    }
+}
+
 static void test_over_critical_steps_are_refused(void **state)
 {
     (void)state;
@@ -155,6 +191,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_critical_step),
+        cmocka_unit_test(test_memory),
         cmocka_unit_test(test_over_critical_steps_are_refused),
         cmocka_unit_test(test_warned_once_when_it_becomes_critical),
         cmocka_unit_test(test_ends_at_duration),

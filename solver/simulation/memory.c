@@ -1,0 +1,70 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* Bytes that a simulation holds, and what they will be. */
+#include "simulation/simulation_private.h"
+
+#include <math.h>
+#include <stddef.h>
+
+/* Packed particles take whole pages of this size (state/sparse_grid.c). */
+#define SLAB_STEP 0x1p21
+
+/* Arrays of one thread for a block; everything behind `gradient` is a pointer to one. */
+enum {
+    SCRATCH_ARRAYS =
+        (sizeof(struct block_scratch) - offsetof(struct block_scratch, gradient)) / sizeof(real *)
+};
+
+double layout_particle_bytes(const struct particle_layout *layout, size_t number)
+{
+    return (double)(layout->double_count * number + sizeof(uint32_t) +
+                    (layout->has_body ? sizeof(uint16_t) : 0));
+}
+
+size_t simulation_memory(const struct talus_simulation *simulation)
+{
+    const struct run *run = &simulation->run;
+    size_t bytes = sizeof *simulation + sparse_grid_memory(&run->grid) +
+                   (run->initial_particle_count + 1) * sizeof *run->outbox +
+                   run->tile_sums_capacity * sizeof *run->tile_sums +
+                   run->wall_node_capacity * sizeof *run->wall_nodes +
+                   run->wall_partial_capacity * sizeof *run->wall_partials +
+                   run->block_walled_capacity * sizeof *run->block_walled;
+    for (int thread = 0; thread < run->thread_capacity; thread++)
+        bytes += run->scratch[thread].capacity * SCRATCH_ARRAYS * sizeof(real);
+    for (size_t index = 0; index < run->walls.face_count + run->scene.boundary_count; index++)
+        bytes += 4 * run->windows[index].capacity * sizeof(double);
+    for (size_t index = 0; index < simulation->blob_count; index++)
+        bytes += simulation->blobs[index].bytes;
+    return bytes;
+}
+
+/* Room for `count` where it starts with `first` and doubles. */
+static double doubled(double first, double count)
+{
+    while (first < count)
+        first *= 2;
+    return first;
+}
+
+double simulation_memory_estimate(const struct run *run, size_t number, double particles,
+                                  double cells)
+{
+    const double lanes_of_block = (double)(sizeof(lanes) / number);
+    const double per_particle = layout_particle_bytes(&run->grid.layout, number);
+    const double per_node_block = (double)run->grid.nodes.layout.component_count * sizeof(lanes) +
+                                  sizeof *run->grid.nodes.place;
+    const double axes = (double)run->scene.axis_count;
+    const double rows = cells > 0 ? particles / cells : 0;
+    /* A body of few blocks has a layer of nodes more on its upper sides. */
+    const double width = pow(fmax(cells, 1), 1 / axes);
+    const double blocks = cells / lanes_of_block * (1 + lanes_of_block / width);
+    const double nodes = blocks * pow(1 + 1 / width, axes) + 2 * pow(width, axes - 1);
+    /* Every cell of a block has room for as many particles as the fullest, an even number. */
+    const double slab = per_particle * blocks * lanes_of_block * (rows + 1);
+    /* With the slack of block_scratch_reserve. */
+    const double scratch =
+        SCRATCH_ARRAYS * (1.5 * (rows + 1) * lanes_of_block + 24) * (double)number;
+    return ceil(slab / SLAB_STEP) * SLAB_STEP + particles * sizeof *run->outbox +
+           doubled(64, blocks) * (sizeof *run->grid.blocks + sizeof *run->grid.tiles + 60) +
+           doubled(256, nodes) * (per_node_block + 36) + scratch + sizeof(struct talus_simulation);
+}
