@@ -113,7 +113,7 @@ class ControlTest(worker_run.RunTest):
         self.assertEqual(self.events()[-1]["reason"], "invalid")
 
     def test_usage(self):
-        for options in (["--threads", "0"], ["--threads", "x"], ["--sideways"], ["extra"]):
+        for options in (["--threads", "-1"], ["--threads", "x"], ["--sideways"], ["extra"]):
             self.run_job(worker_run.scene(), "job", *options, expect=1)
         self.assertFalse((self.folder / "job").exists())
 
