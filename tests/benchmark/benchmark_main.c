@@ -13,7 +13,8 @@
 static int measure_one(const struct benchmark_options *options)
 {
     struct benchmark_suite suite;
-    bool good = benchmark_suite_run_one(&suite, &options->setup, &options->effort);
+    benchmark_suite_run_one(&suite, &options->setup, &options->effort);
+    bool good = suite.complete;
     if (good)
         benchmark_report_one(&suite.rows[0]);
     if (good && options->path != NULL)
@@ -29,9 +30,10 @@ static int measure_all(const struct benchmark_options *options)
     benchmark_processor_slug(slug, sizeof slug);
     (void)snprintf(path, sizeof path, "%s/%s%s.csv", options->folder, slug,
                    options->single ? "-single" : "");
-    bool good = benchmark_suite_run(&suite, options->form);
+    benchmark_suite_run(&suite, options->form);
     benchmark_table_print(&suite);
-    good = good && benchmark_csv_write(&suite, options->path != NULL ? options->path : path);
+    const bool written = benchmark_csv_write(&suite, options->path != NULL ? options->path : path);
+    const bool good = written && suite.complete;
     benchmark_suite_release(&suite);
     return good ? 0 : 1;
 }

@@ -4,77 +4,19 @@
 #include "benchmark_clock.h"
 #include "benchmark_machine.h"
 #include "benchmark_operations.h"
+#include "benchmark_plan.h"
 
 #include <math.h>
 #include <omp.h>
 #include <stdlib.h>
 #include <string.h>
 
-enum { SIZE_MAX_COUNT = 3, SMALL_MAX_COUNT = 4, SET_MAX = 8 };
+enum { SET_MAX = 2 * PLAN_SMALL_MAX };
 /* Shares of the critical step for what is not stable at the default one. */
 static const double careful[] = {0.1, 0.025, 0.005};
 enum { CAREFUL_COUNT = sizeof careful / sizeof careful[0] };
 /* Memory of a particle with all that belongs to it, generously [bytes]. */
 #define BYTES_PER_PARTICLE 700.0
-
-/* How much of everything. */
-struct plan {
-    const char *word;
-    bool every; /* every case in every set; otherwise the capped Drucker-Prager model in 3-D */
-    size_t particles;
-    struct benchmark_effort effort;
-    size_t sizes[SIZE_MAX_COUNT]; /* 0: no more */
-    struct benchmark_effort size_effort;
-    size_t domain_particles;
-    double domains[SIZE_MAX_COUNT];
-    size_t small[SMALL_MAX_COUNT];
-    struct benchmark_effort small_effort;
-    size_t flow_particles;
-    size_t witness_particles;
-    int ceiling_tries;
-};
-
-static const struct plan plans[] = {
-    [BENCHMARK_ONE] = {.word = "single"},
-    [BENCHMARK_SMOKE] = {.word = "smoke",
-                         .every = true,
-                         .particles = 1000,
-                         .effort = {16, 1},
-                         .sizes = {500, 1000},
-                         .size_effort = {16, 1},
-                         .domain_particles = 1000,
-                         .domains = {1, 100, 10000},
-                         .small = {200, 1000},
-                         .small_effort = {16, 1},
-                         .flow_particles = 600,
-                         .witness_particles = 600,
-                         .ceiling_tries = 1},
-    [BENCHMARK_SHORT] = {.word = "short",
-                         .particles = 50000,
-                         .effort = {32, 3},
-                         .sizes = {50000, 200000},
-                         .size_effort = {16, 3},
-                         .domain_particles = 50000,
-                         .domains = {1, 100, 10000},
-                         .small = {1000, 8000},
-                         .small_effort = {64, 8},
-                         .flow_particles = 10000,
-                         .witness_particles = 2000,
-                         .ceiling_tries = 4},
-    [BENCHMARK_FULL] = {.word = "full",
-                        .every = true,
-                        .particles = 500000,
-                        .effort = {32, 7},
-                        .sizes = {50000, 500000, 4000000},
-                        .size_effort = {16, 5},
-                        .domain_particles = 200000,
-                        .domains = {1, 100, 10000},
-                        .small = {250, 1000, 4000, 16000},
-                        .small_effort = {64, 32},
-                        .flow_particles = 60000,
-                        .witness_particles = 10000,
-                        .ceiling_tries = 16},
-};
 
 const char *benchmark_set_word(enum benchmark_set set)
 {
@@ -85,7 +27,7 @@ const char *benchmark_set_word(enum benchmark_set set)
 
 const char *benchmark_form_word(enum benchmark_form form)
 {
-    return plans[form].word;
+    return benchmark_plans[form].word;
 }
 
 double benchmark_row_gigaflops(const struct benchmark_row *row)
@@ -189,7 +131,7 @@ static bool run_set(struct benchmark_suite *suite, enum benchmark_set set,
                                       .witness = {NAN, NAN},
                                       .operations = benchmark_operations(&setups[index])};
         if (looks && !results[index].failed && setups[index].threads == 1 &&
-            !benchmark_witness_call(&setups[index], plans[suite->form].witness_particles,
+            !benchmark_witness_call(&setups[index], benchmark_plans[suite->form].witness_particles,
                                     effort->steps, &row->witness))
             return false;
     }
@@ -218,7 +160,7 @@ static bool is_main_case(const struct benchmark_case *subject)
     return strcmp(subject->name, "drucker_prager_cap_3d") == 0;
 }
 
-static bool run_ordering_sets(struct benchmark_suite *suite, const struct plan *plan)
+static bool run_ordering_sets(struct benchmark_suite *suite, const struct benchmark_plan *plan)
 {
     for (size_t index = 0; index < benchmark_case_count; index++) {
         const struct benchmark_case *subject = &benchmark_cases[index];
@@ -230,14 +172,14 @@ static bool run_ordering_sets(struct benchmark_suite *suite, const struct plan *
     return true;
 }
 
-static bool run_size_sets(struct benchmark_suite *suite, const struct plan *plan)
+static bool run_size_sets(struct benchmark_suite *suite, const struct benchmark_plan *plan)
 {
     for (size_t index = 0; index < benchmark_case_count; index++) {
         const struct benchmark_case *subject = &benchmark_cases[index];
         for (int last = 1; last >= 0 && (plan->every || is_main_case(subject)); last--) {
-            struct benchmark_setup setups[SIZE_MAX_COUNT];
+            struct benchmark_setup setups[PLAN_SIZE_MAX];
             size_t count = 0;
-            while (count < SIZE_MAX_COUNT && plan->sizes[count] > 0) {
+            while (count < PLAN_SIZE_MAX && plan->sizes[count] > 0) {
                 setups[count] = base_setup(subject, plan->sizes[count]);
                 setups[count++].last = last == 1;
             }
@@ -249,7 +191,7 @@ static bool run_size_sets(struct benchmark_suite *suite, const struct plan *plan
 }
 
 /* Nine and four particles per cell in two dimensions. */
-static bool run_density_sets(struct benchmark_suite *suite, const struct plan *plan)
+static bool run_density_sets(struct benchmark_suite *suite, const struct benchmark_plan *plan)
 {
     for (size_t index = 0; index < benchmark_case_count; index++) {
         const struct benchmark_case *subject = &benchmark_cases[index];
@@ -264,7 +206,7 @@ static bool run_density_sets(struct benchmark_suite *suite, const struct plan *p
     return true;
 }
 
-static bool run_anti_locking_sets(struct benchmark_suite *suite, const struct plan *plan)
+static bool run_anti_locking_sets(struct benchmark_suite *suite, const struct benchmark_plan *plan)
 {
     for (size_t index = 0; index < benchmark_case_count; index++) {
         const struct benchmark_case *subject = &benchmark_cases[index];
@@ -280,32 +222,32 @@ static bool run_anti_locking_sets(struct benchmark_suite *suite, const struct pl
     return true;
 }
 
-static bool run_domain_sets(struct benchmark_suite *suite, const struct plan *plan)
+static bool run_domain_sets(struct benchmark_suite *suite, const struct benchmark_plan *plan)
 {
     for (size_t index = 0; index < benchmark_case_count; index++) {
         const struct benchmark_case *subject = &benchmark_cases[index];
-        struct benchmark_setup setups[SIZE_MAX_COUNT];
+        struct benchmark_setup setups[PLAN_SIZE_MAX];
         if (!is_main_case(subject) && !(plan->every && subject->locks))
             continue;
-        for (size_t grid = 0; grid < SIZE_MAX_COUNT; grid++) {
+        for (size_t grid = 0; grid < PLAN_SIZE_MAX; grid++) {
             setups[grid] = base_setup(subject, plan->domain_particles);
             setups[grid].domain_factor = plan->domains[grid];
         }
-        if (!run_set(suite, BENCHMARK_DOMAIN, setups, SIZE_MAX_COUNT, &plan->effort, false))
+        if (!run_set(suite, BENCHMARK_DOMAIN, setups, PLAN_SIZE_MAX, &plan->effort, false))
             return false;
     }
     return true;
 }
 
-static bool run_small_sets(struct benchmark_suite *suite, const struct plan *plan)
+static bool run_small_sets(struct benchmark_suite *suite, const struct benchmark_plan *plan)
 {
     for (size_t index = 0; index < benchmark_case_count; index++) {
         const struct benchmark_case *subject = &benchmark_cases[index];
-        struct benchmark_setup setups[2 * SMALL_MAX_COUNT];
+        struct benchmark_setup setups[2 * PLAN_SMALL_MAX];
         size_t count = 0;
         if (!is_main_case(subject) && !(plan->every && subject->locks))
             continue;
-        for (size_t size = 0; size < SMALL_MAX_COUNT && plan->small[size] > 0; size++) {
+        for (size_t size = 0; size < PLAN_SMALL_MAX && plan->small[size] > 0; size++) {
             for (int threads = 1; threads <= suite->threads; threads++) {
                 setups[count] = base_setup(subject, plan->small[size]);
                 setups[count].last = false;
@@ -318,7 +260,7 @@ static bool run_small_sets(struct benchmark_suite *suite, const struct plan *pla
     return true;
 }
 
-static bool run_flow_sets(struct benchmark_suite *suite, const struct plan *plan)
+static bool run_flow_sets(struct benchmark_suite *suite, const struct benchmark_plan *plan)
 {
     for (size_t index = 0; index < benchmark_case_count; index++) {
         const struct benchmark_case *subject = &benchmark_cases[index];
@@ -344,30 +286,31 @@ static bool measure_ceilings(struct benchmark_suite *suite, int tries)
     return true;
 }
 
-bool benchmark_suite_run_one(struct benchmark_suite *suite, const struct benchmark_setup *setup,
+void benchmark_suite_run_one(struct benchmark_suite *suite, const struct benchmark_setup *setup,
                              const struct benchmark_effort *effort)
 {
     struct benchmark_setup only = *setup;
     *suite = (struct benchmark_suite){.form = BENCHMARK_ONE, .seconds = benchmark_wall_seconds()};
     suite->threads = setup->threads;
-    const bool good = ceiling_create(&suite->ceiling, suite->threads) &&
-                      run_set(suite, BENCHMARK_SINGLE, &only, 1, effort, false);
+    suite->complete = ceiling_create(&suite->ceiling, suite->threads) &&
+                      run_set(suite, BENCHMARK_SINGLE, &only, 1, effort, false) &&
+                      suite->row_count == 1 && !suite->rows[0].result.failed;
     suite->seconds = benchmark_wall_seconds() - suite->seconds;
-    return good && !suite->rows[0].result.failed;
 }
 
-bool benchmark_suite_run(struct benchmark_suite *suite, enum benchmark_form form)
+void benchmark_suite_run(struct benchmark_suite *suite, enum benchmark_form form)
 {
-    const struct plan *plan = &plans[form];
+    const struct benchmark_plan *plan = &benchmark_plans[form];
     *suite = (struct benchmark_suite){.form = form, .seconds = benchmark_wall_seconds()};
     suite->threads = omp_get_num_procs() > 1 ? 2 : 1;
-    const bool good = measure_ceilings(suite, plan->ceiling_tries) &&
+    if (getloadavg(&suite->load, 1) != 1)
+        suite->load = NAN;
+    suite->complete = measure_ceilings(suite, plan->ceiling_tries) &&
                       run_ordering_sets(suite, plan) && run_anti_locking_sets(suite, plan) &&
                       run_density_sets(suite, plan) && run_domain_sets(suite, plan) &&
                       run_small_sets(suite, plan) && run_flow_sets(suite, plan) &&
                       run_size_sets(suite, plan);
     suite->seconds = benchmark_wall_seconds() - suite->seconds;
-    return good;
 }
 
 void benchmark_suite_release(struct benchmark_suite *suite)

@@ -46,6 +46,8 @@ struct benchmark_suite {
     struct benchmark_row *rows;        /* [row_count] owned */
     size_t row_count, row_capacity;
     double seconds;
+    double load;   /* runnable programs on the machine before, its average of a minute */
+    bool complete; /* everything could be measured */
 };
 
 const char *benchmark_set_word(enum benchmark_set set);
@@ -55,10 +57,10 @@ double benchmark_row_gigaflops(const struct benchmark_row *row);
 double benchmark_row_gigabytes(const struct benchmark_row *row);
 /* Sum over the stages [ns]. */
 double benchmark_row_stage_sum(const struct benchmark_row *row);
-/* Measures; tells on stderr how far it is. False if something could not be measured. */
-bool benchmark_suite_run(struct benchmark_suite *suite, enum benchmark_form form);
+/* Measures, and tells on stderr how far it is; stops at what cannot be measured. */
+void benchmark_suite_run(struct benchmark_suite *suite, enum benchmark_form form);
 /* The same for one measurement, without looking for a step that is stable. */
-bool benchmark_suite_run_one(struct benchmark_suite *suite, const struct benchmark_setup *setup,
+void benchmark_suite_run_one(struct benchmark_suite *suite, const struct benchmark_setup *setup,
                              const struct benchmark_effort *effort);
 void benchmark_suite_release(struct benchmark_suite *suite);
 

@@ -17,6 +17,8 @@ static void print_machine(const struct benchmark_suite *suite)
     benchmark_processor(processor, sizeof processor);
     (void)printf("%s, %s, %s precision, %s\n", processor, benchmark_isa(),
                  benchmark_is_single() ? "single" : "double", talus_build());
+    (void)printf("  load average before %.1f%s\n", suite->load,
+                 suite->complete ? "" : ", INCOMPLETE");
     for (int kind = 0; kind < CEILING_COUNT; kind++) {
         (void)printf("  %-9s %7.1f %s of a core", names[kind], suite->ceilings[kind][0],
                      units[kind]);
