@@ -75,7 +75,8 @@ void benchmark_table_print(const struct benchmark_suite *suite)
     (void)printf(
         "\nrate: million particle-steps/s per core, median and quartiles of repeats; rel: "
         "per core, over the first of the set;\nsim: simulated seconds per second; B: bytes "
-        "per particle stored, and with the grid; %%FMA and %%mem: of the peak and of the\n"
+        "per particle stored, with the grid, and allocated; %%FMA and %%mem: of the peak and of "
+        "the\n"
         "in-place bandwidth of the same moment; %%pl: particles that yield in a step; "
         "strain: of a step\n\n");
     (void)printf("%-12s %-22s %-7s %-13s %-4s %1s %8s %7s %15s %6s %9s %4s %5s %5s %5s %7s %5s %5s "
