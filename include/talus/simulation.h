@@ -160,9 +160,13 @@ struct talus_estimate {
     uint64_t memory_bytes;
     uint64_t bytes_per_particle;
     int useful_threads; /* as many as pay, on a machine that has them */
+    /* In single precision, else 0; refused where they are too large. */
+    double motion_error; /* [-] share of its motion that the slowest body may lose to rounding */
+    double force_noise;  /* [-] of stresses and forces, over those of the weight or an impact */
 };
 /* What a scene would cost, in milliseconds and without allocating its particles. TALUS_INVALID for
- * a fixed step above the critical one (pointer /solver/time_step) unless the scene allows it. */
+ * a fixed step above the critical one (pointer /solver/time_step) unless the scene allows it, and
+ * for single precision where it is not safe (/solver/precision). */
 TALUS_MUST_CHECK enum talus_status talus_simulation_estimate(const struct talus_scene *scene,
                                                              struct talus_estimate *estimate,
                                                              struct talus_error *error);

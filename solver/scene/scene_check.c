@@ -147,6 +147,24 @@ static void warn_of_references(struct scene_reader *reader)
     }
 }
 
+/* Single precision that is safe, but can be seen. */
+static void warn_of_precision(struct scene_reader *reader, const struct talus_estimate *estimate)
+{
+    const double motion_limit = 0.01, noise_limit = 0.03;
+    struct scene_path parent = {.key = "solver"};
+    struct scene_path here = {.parent = &parent, .key = "precision"};
+    if (estimate->motion_error > motion_limit)
+        scene_warn(reader, &here, "precision",
+                   "single precision may take up to %.2g of the motion of the slowest body, in the "
+                   "rounding of its positions",
+                   estimate->motion_error);
+    if (estimate->force_noise > noise_limit)
+        scene_warn(reader, &here, "precision",
+                   "single precision may add noise of up to %.2g of the stress of the weight to "
+                   "single samples of stresses and forces; means are not affected",
+                   estimate->force_noise);
+}
+
 /* A fixed step above the critical one, and whatever else the solver refuses. */
 static void check_estimate(struct scene_reader *reader)
 {
@@ -154,6 +172,8 @@ static void check_estimate(struct scene_reader *reader)
     struct talus_error error = {.status = TALUS_OK};
     if (talus_simulation_estimate(reader->scene, &estimate, &error) != TALUS_OK)
         scene_mistake_at(reader, error.pointer, error.code, error.text);
+    else
+        warn_of_precision(reader, &estimate);
 }
 
 void scene_check(struct scene_reader *reader)

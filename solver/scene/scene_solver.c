@@ -27,8 +27,7 @@ static const char *const field_lacking[] = {"full", "full_constant_volume", NULL
 static const char *const apply_words[] = {"strain_and_stress", "strain", NULL};
 static const char *const small_mass_words[] = {"none", NULL};
 static const char *const small_mass_lacking[] = {"cutoff", "redistribute", NULL};
-static const char *const precision_words[] = {"double", NULL};
-static const char *const precision_lacking[] = {"single", NULL};
+static const char *const precision_words[] = {"double", "single", NULL};
 
 static const struct scene_field anti_locking_fields[] = {
     {.key = "control",
@@ -187,7 +186,6 @@ const struct scene_field scene_solver_fields[] = {
      .kind = SCENE_CHOICE,
      .unit = "1",
      .choices = precision_words,
-     .lacking = precision_lacking,
      .offset = AT(precision),
      .meaning = "floating point numbers of particles, nodes and kernels"},
     {.key = "steps", .unsupported = true},

@@ -2,6 +2,7 @@
 /* What a scene costs, before anything is allocated for it. */
 #include "seeding/seeding.h"
 #include "simulation/simulation_private.h"
+#include "simulation/single_precision.h"
 
 #include <limits.h>
 #include <math.h>
@@ -55,11 +56,17 @@ enum talus_status talus_simulation_estimate(const struct talus_scene *scene,
     estimate->memory_bytes = saturate(
         simulation_memory_estimate(&run, number_bytes(scene), (double)estimate->particle_count,
                                    (double)estimate->active_cell_count));
+    if (scene->solver.precision == TALUS_PRECISION_SINGLE) {
+        const struct single_precision single = single_precision_estimate(&run, estimate->time_step);
+        estimate->motion_error = single.motion_error;
+        estimate->force_noise = single.force_noise;
+    }
+    status = single_precision_check(&run, estimate->time_step, error);
     run_release(&run);
     if (fixed > critical && !scene->solver.allow_unstable)
         return talus_error_set(error, TALUS_INVALID, "over_critical", "/solver/time_step",
                                "%.6g s is above the critical step of %.6g s for this method; use "
                                "\"auto\", a smaller step, or \"allow_unstable\": true",
                                fixed, critical);
-    return TALUS_OK;
+    return status;
 }

@@ -202,7 +202,7 @@ class FilesTest(worker_run.RunTest):
             content = (self.job / entry["file"]).read_bytes()
             self.assertEqual(entry["sha256"], hashlib.sha256(content).hexdigest())
             self.assertEqual(entry["bytes"], len(content))
-        for key in ("scene_hash", "build", "compiler", "isa", "threads", "command", "state_hash"):
+        for key in ("scene_hash", "build", "compiler", "isa", "precision", "threads", "command", "state_hash"):
             self.assertTrue(receipt[key], key)
 
     def test_events(self):

@@ -116,7 +116,7 @@ void slots_init(struct slots *slots, size_t count, size_t component_count)
     memset(slots, 0, sizeof *slots);
     slots->memory = calloc(count * ARRAYS, sizeof *slots->memory);
     assert_non_null(slots->memory);
-    double *next = slots->memory;
+    real *next = slots->memory;
     slots->batch.count = count;
     slots->batch.component_count = component_count;
     slots->batch.time_step = 1e-3;
@@ -153,14 +153,13 @@ double random_value(uint64_t *state)
     return (double)(*state >> 11) / 4503599627370496.0 - 1.0;
 }
 
-double slots_trace(double *const arrays[SYM3_COMPONENTS], size_t slot, size_t component_count)
+double slots_trace(real *const arrays[SYM3_COMPONENTS], size_t slot, size_t component_count)
 {
     (void)component_count;
     return arrays[0][slot] + arrays[1][slot] + arrays[2][slot];
 }
 
-double slots_deviator_norm(double *const arrays[SYM3_COMPONENTS], size_t slot,
-                           size_t component_count)
+double slots_deviator_norm(real *const arrays[SYM3_COMPONENTS], size_t slot, size_t component_count)
 {
     double mean = slots_trace(arrays, slot, component_count) / 3.0;
     double sum = 0.0;

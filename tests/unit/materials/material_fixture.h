@@ -40,11 +40,11 @@ void fixture_release(struct fixture *fixture);
 
 struct slots { /* a batch and its arrays, zeroed with volume_ratio 1 */
     struct material_batch batch;
-    double *memory;
-    double *rate[SYM3_COMPONENTS];
-    double *spin[3];
-    double *volume_ratio;
-    double *history[16];
+    real *memory;
+    real *rate[SYM3_COMPONENTS];
+    real *spin[3];
+    real *volume_ratio;
+    real *history[16];
 };
 
 void slots_init(struct slots *slots, size_t count, size_t component_count);
@@ -54,8 +54,8 @@ void slots_release(struct slots *slots);
 double random_value(uint64_t *state);
 
 /* I1 and |s| of a tensor in the arrays. */
-double slots_trace(double *const arrays[SYM3_COMPONENTS], size_t slot, size_t component_count);
-double slots_deviator_norm(double *const arrays[SYM3_COMPONENTS], size_t slot,
+double slots_trace(real *const arrays[SYM3_COMPONENTS], size_t slot, size_t component_count);
+double slots_deviator_norm(real *const arrays[SYM3_COMPONENTS], size_t slot,
                            size_t component_count);
 
 struct record { /* the steps of a path */

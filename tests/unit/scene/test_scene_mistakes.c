@@ -86,7 +86,7 @@ static const struct mistake mistakes[] = {
     {BASE_PLANE, "/solver/stabilise", "{\"local_damping\": 1}", "/solver/stabilise/local_damping",
      "range"},
     {BASE_PLANE, "/solver/stabilise", "[]", NULL, "type"},
-    {BASE_PLANE, "/solver/precision", "\"single\"", NULL, "unsupported"},
+    {BASE_PLANE, "/solver/precision", "\"half\"", NULL, "unknown_value"},
     {BASE_PLANE, "/solver/tolerance", "1e-3", NULL, "unsupported"},
     {BASE_PLANE, "/solver/solver", "1", NULL, "unknown_key"},
     /* ---- materials ---- */

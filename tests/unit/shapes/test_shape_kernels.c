@@ -8,6 +8,7 @@
 enum { ROWS = 5 };
 #define TIME_STEP 0.125
 #define DENSITY 4.0
+#define ROUNDING (45 * (double)REAL_EPSILON)
 static const double cell_width[3] = {0.5, 0.25, 2.0};
 
 struct bench {
@@ -17,7 +18,7 @@ struct bench {
     const struct shape_kernels *kernels;
     size_t axes, count;
     uint32_t block;
-    _Alignas(64) double volume[ROWS * LANE_COUNT];
+    _Alignas(64) real volume[ROWS * LANE_COUNT];
 };
 
 static struct particle_block *bench_block(struct bench *bench)
@@ -25,7 +26,7 @@ static struct particle_block *bench_block(struct bench *bench)
     return &bench->grid.blocks[bench->block];
 }
 
-static double *values(struct bench *bench, enum particle_field field, size_t component)
+static real *values(struct bench *bench, enum particle_field field, size_t component)
 {
     return particle_values(&bench->grid.layout, bench_block(bench), field, (uint32_t)component);
 }
@@ -128,10 +129,10 @@ static void check_linear_reproduction(struct bench *bench)
             for (size_t axis = 0; axis < bench->axes; axis++) {
                 value += b[row][axis] * particle_position(bench, slot, axis);
                 assert_close(bench->scratch.gradient[3 * row + axis][slot],
-                             filled(bench, slot) ? TIME_STEP * b[row][axis] : 0.0, 1e-14, 10);
+                             filled(bench, slot) ? TIME_STEP * b[row][axis] : 0.0, ROUNDING, 10);
             }
             assert_close(bench->scratch.displacement[row][slot] * cell_width[row],
-                         filled(bench, slot) ? TIME_STEP * value : 0.0, 1e-14, 10);
+                         filled(bench, slot) ? TIME_STEP * value : 0.0, ROUNDING, 10);
         }
     }
 }
@@ -172,7 +173,7 @@ static void check_sums(struct bench *bench)
         }
     }
     for (size_t k = 0; k < LENGTH(actual); k++)
-        assert_close(actual[k], expected[k], 1e-13, 20);
+        assert_close(actual[k], expected[k], 10 * ROUNDING, 20);
 }
 
 static void fill_scratch(struct bench *bench)
@@ -221,8 +222,8 @@ static void check_transposes(struct bench *bench)
                                 bench->scratch.gradient[3 * row + axis][slot];
         }
     }
-    assert_close(TIME_STEP * nodal, material, 1e-13, 30);
-    assert_close(TIME_STEP * force_power, stress_power, 1e-13, 100);
+    assert_close(TIME_STEP * nodal, material, 10 * ROUNDING, 30);
+    assert_close(TIME_STEP * force_power, stress_power, 10 * ROUNDING, 100);
 }
 
 /* One particle at a time gives what all at once give. */
@@ -233,19 +234,19 @@ static void check_scatter_one(struct bench *bench)
     clear_nodes(bench);
     const struct scatter_source source = source_of(bench);
     bench->kernels->scatter(&bench->context, bench_block(bench), &source, true);
-    double *all = malloc(size * sizeof *all);
+    real *all = malloc(size * sizeof *all);
     assert_non_null(all);
     memcpy(all, nodes->values, size * sizeof *all);
     clear_nodes(bench);
     for (size_t slot = 0; slot < bench->count; slot++) {
-        double stress[6];
+        real stress[6];
         for (size_t component = 0; component < 6; component++)
             stress[component] = bench->volume[slot] * bench->scratch.stress[component][slot];
         if (filled(bench, slot))
             bench->kernels->scatter_one(&bench->context, bench_block(bench), slot, stress, true);
     }
     for (size_t k = 0; k < size; k++)
-        assert_close(nodes->values[k], all[k], 1e-14, 30);
+        assert_close(nodes->values[k], all[k], ROUNDING, 30);
     free(all);
 }
 
@@ -280,8 +281,8 @@ static void check_kick(struct bench *bench)
             for (size_t lane = 0; lane < LANE_COUNT; lane++)
                 nodal[axis] += node_values(nodes, block, nodes->layout.momentum + axis)[lane];
         }
-        assert_close(after[axis], before[axis] + mass * constant[axis], 1e-13, 30);
-        assert_close(nodal[axis], after[axis], 1e-13, 30);
+        assert_close(after[axis], before[axis] + mass * constant[axis], 10 * ROUNDING, 30);
+        assert_close(nodal[axis], after[axis], 10 * ROUNDING, 30);
     }
 }
 

@@ -51,7 +51,7 @@ static void test_chunk_holds_all_arrays_without_overlap(void **state)
         for (uint32_t component = 0; component < layout.double_count; component++)
             assert_ptr_equal(particle_values(&layout, &block, PARTICLE_POSITION, component),
                              block.data + component * slots);
-        assert_true((const char *)block.id >= begin + layout.double_count * slots * 8);
+        assert_true((const char *)block.id >= begin + layout.double_count * slots * sizeof(real));
         assert_true((const char *)(block.id + slots) <= end);
         if (has_body) {
             assert_true(block.body >= (uint16_t *)(void *)(block.id + slots));
@@ -111,7 +111,7 @@ static void take(const struct particle_layout *layout, struct particle_block *bl
     const struct particle_record original = make_record(layout, expected->id[lane][row]);
     assert_int_equal(record.id, original.id);
     assert_int_equal(record.body, block->body != NULL ? original.body : 0);
-    assert_memory_equal(record.values, original.values, layout->double_count * sizeof(double));
+    assert_memory_equal(record.values, original.values, layout->double_count * sizeof(real));
     expected->id[lane][row] = expected->id[lane][--expected->count[lane]];
 }
 

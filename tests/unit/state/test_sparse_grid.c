@@ -31,12 +31,14 @@ static void test_blocks_know_their_nodes(void **state)
     (void)state;
     struct sparse_grid grid;
     grid_init(&grid, 3);
-    const uint32_t a = place(&grid, 6, 2, 3, 0), b = place(&grid, 9, 2, 3, 1);
+    const int32_t first = LANE_COUNT;
+    const uint32_t a = place(&grid, first + 2, 2, 3, 0);
+    const uint32_t b = place(&grid, 2 * first + 1, 2, 3, 1);
     const struct particle_block *blocks = grid.blocks;
-    assert_int_equal(blocks[a].cell[0], 4);
+    assert_int_equal(blocks[a].cell[0], first);
     for (int corner = 0; corner < 8; corner++) {
         const int32_t *node = grid.nodes.place[blocks[a].nodes[corner]];
-        assert_int_equal(node[0], 4 + LANE_COUNT * (corner & 1));
+        assert_int_equal(node[0], first + LANE_COUNT * (corner & 1));
         assert_int_equal(node[1], 2 + (corner >> 1 & 1));
         assert_int_equal(node[2], 3 + (corner >> 2));
     }
