@@ -45,12 +45,13 @@ void run_note_speed(const struct run *run, uint64_t materials, double speed_squa
                     struct tile_sums *sums)
 {
     double wave = 0;
-    for (size_t index = 0; index < run->scene.material_count; index++) {
-        if ((materials >> index & 1) != 0)
-            wave = fmax(wave, run->materials[index].wave_speed);
+    for (uint64_t left = materials; left != 0; left &= left - 1) {
+        const double speed = run->materials[__builtin_ctzll(left)].wave_speed;
+        wave = speed > wave ? speed : wave;
     }
+    const double signal = wave + sqrt(speed_squared);
     sums->speed_squared = sticky_maximum(sums->speed_squared, speed_squared);
-    sums->signal_speed = fmax(sums->signal_speed, wave + sqrt(speed_squared));
+    sums->signal_speed = signal > sums->signal_speed ? signal : sums->signal_speed;
     sums->materials |= materials;
 }
 
