@@ -114,6 +114,7 @@ static void push(const struct run *run, size_t count, const struct block_scratch
 static void symmetric_rate(size_t count, size_t axes, const struct block_scratch *scratch,
                            real inverse_step)
 {
+    assert(axes >= 1 && axes <= 3);
     for (size_t row = 0; row < axes; row++) {
         for (size_t column = row; column < axes; column++) {
             const real *a = scratch->gradient[3 * row + column];
@@ -282,6 +283,7 @@ static void advance_gradient(const struct run *run, const struct particle_block 
                              const struct block_scratch *scratch, size_t count)
 {
     const size_t axes = run->grid.domain.axis_count;
+    assert(axes >= 1 && axes <= 3);
     for (size_t slot = 0; slot < count; slot += LANE_COUNT) {
         lanes old[3][3], g[3][3];
         load_increment(scratch, slot, axes, g);
@@ -303,6 +305,7 @@ static void advance_total_strain(const struct run *run, const struct particle_bl
                                  const struct block_scratch *scratch, size_t count)
 {
     const size_t axes = run->grid.domain.axis_count;
+    assert(axes >= 1 && axes <= 3);
     for (size_t row = 0; row < axes; row++) {
         for (size_t column = row; column < axes; column++) {
             real *total = particle_values(&run->grid.layout, block, PARTICLE_TOTAL_STRAIN,

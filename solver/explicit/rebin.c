@@ -8,6 +8,9 @@
 #include <math.h>
 #include <string.h>
 
+/* Particles between the one that moves and those whose memory is asked for. */
+enum { SOURCE_AHEAD = 6, TARGET_AHEAD = 3 };
+
 /* Cell and relative position after the move; false if the particle is outside of the grid. */
 static bool rebase(const struct run *run, struct particle_record *record, int32_t cell[3])
 {
@@ -76,6 +79,58 @@ static enum talus_status move_record(struct run *run, const struct outbox_record
     return TALUS_OK;
 }
 
+/* Asks for the cache lines of one slot of a block: one for each component. Inlined by force, as
+ * fetch_portion is. */
+__attribute__((always_inline)) static inline void
+fetch_slot(const struct particle_layout *layout, const struct particle_block *block, size_t slot)
+{
+    const size_t stride = (size_t)block->row_capacity * LANE_COUNT;
+    for (size_t component = 0; component < layout->double_count; component++)
+        __builtin_prefetch(block->data + component * stride + slot, 1);
+    __builtin_prefetch(block->id + slot, 1);
+}
+
+/* A particle that moves touches lines all over memory. Those of its old place are asked for some
+ * particles ahead. */
+__attribute__((always_inline)) static inline void fetch_source(const struct run *run,
+                                                               const struct outbox_record *entry)
+{
+    const struct particle_block *block = &run->grid.blocks[entry->block];
+    const size_t lane = entry->slot % LANE_COUNT;
+    const size_t rows = block->lane_count[lane];
+    fetch_slot(&run->grid.layout, block, entry->slot);
+    if (rows > 0)
+        fetch_slot(&run->grid.layout, block, (rows - 1) * LANE_COUNT + lane);
+}
+
+/* Then, with its position at hand, those of its new place and of the nodes there. */
+__attribute__((always_inline)) static inline void fetch_target(const struct run *run,
+                                                               const struct outbox_record *entry)
+{
+    const struct sparse_grid *grid = &run->grid;
+    const struct particle_block *block = &grid->blocks[entry->block];
+    int32_t cell[3] = {block->cell[0] + (int32_t)(entry->slot % LANE_COUNT), block->cell[1],
+                       block->cell[2]};
+    for (uint32_t axis = 0; axis < grid->domain.axis_count; axis++) {
+        const real position =
+            particle_values(&grid->layout, block, PARTICLE_POSITION, axis)[entry->slot];
+        cell[axis] += position > (real)0.5 ? 1 : position < (real)-0.5 ? -1 : 0;
+        if (cell[axis] < 0)
+            return;
+    }
+    const uint32_t target = sparse_grid_find_block(grid, cell);
+    if (target == BLOCK_NONE || grid->blocks[target].data == NULL)
+        return;
+    const struct particle_block *next = &grid->blocks[target];
+    const size_t lane = (size_t)(cell[0] - next->cell[0]);
+    fetch_slot(&grid->layout, next, (size_t)next->lane_count[lane] * LANE_COUNT + lane);
+    for (size_t corner = 0; corner < (size_t)1 << grid->domain.axis_count; corner++) {
+        const char *values = (const char *)node_values(&grid->nodes, next->nodes[corner], 0);
+        __builtin_prefetch(values, 1);
+        __builtin_prefetch(values + 64, 1);
+    }
+}
+
 /* Drops empty blocks when they are more than a quarter. */
 static int purge_if_sparse(struct run *run)
 {
@@ -123,9 +178,13 @@ enum talus_status run_rebin(struct run *run, struct talus_error *error)
 {
     for (size_t index = 0; index < run->grid.tile_count; index++) {
         const struct tile *tile = &run->grid.tiles[index];
+        const struct outbox_record *records = &run->outbox[tile->outbox_begin];
         for (size_t entry = tile->outbox_count; entry-- > 0;) {
-            const enum talus_status status =
-                move_record(run, &run->outbox[tile->outbox_begin + entry], error);
+            if (entry >= SOURCE_AHEAD)
+                fetch_source(run, &records[entry - SOURCE_AHEAD]);
+            if (entry >= TARGET_AHEAD)
+                fetch_target(run, &records[entry - TARGET_AHEAD]);
+            const enum talus_status status = move_record(run, &records[entry], error);
             if (status != TALUS_OK)
                 return status;
         }

@@ -32,6 +32,11 @@ static int connect_nodes(struct sparse_grid *grid, struct particle_block *block)
     return 0;
 }
 
+uint32_t sparse_grid_find_block(const struct sparse_grid *grid, const int32_t cell[3])
+{
+    return block_map_find(&grid->map, block_key(cell[0] / LANE_COUNT, cell[1], cell[2]));
+}
+
 uint32_t sparse_grid_require_block(struct sparse_grid *grid, const int32_t cell[3])
 {
     const uint64_t key = block_key(cell[0] / LANE_COUNT, cell[1], cell[2]);
@@ -134,21 +139,40 @@ static void cut_tiles(struct sparse_grid *grid, const struct tile_key *keys)
         grid->colour_begin[colour++] = grid->tile_count;
 }
 
+/* Keys of all blocks in order: those that had tiles before are in order already, and a flow adds a
+ * few in almost every step. `fresh` has room for the new ones. */
+static void order_blocks(const struct sparse_grid *grid, struct tile_key *keys,
+                         struct tile_key *fresh)
+{
+    const size_t old_count = grid->tiled_count, fresh_count = grid->block_count - old_count;
+    for (size_t index = 0; index < fresh_count; index++)
+        fresh[index] = tile_key_of(grid, old_count + index);
+    qsort(fresh, fresh_count, sizeof *fresh, compare_tile_keys);
+    size_t next = 0;
+    for (size_t index = 0; index < old_count; index++) {
+        const struct tile_key key = tile_key_of(grid, grid->tile_blocks[index]);
+        while (next < fresh_count && compare_tile_keys(&fresh[next], &key) < 0)
+            *keys++ = fresh[next++];
+        *keys++ = key;
+    }
+    while (next < fresh_count)
+        *keys++ = fresh[next++];
+}
+
 int sparse_grid_update_tiles(struct sparse_grid *grid)
 {
     if (!grid->tiles_stale)
         return 0;
-    struct tile_key *keys = malloc((grid->block_count + 1) * sizeof *keys);
+    struct tile_key *keys = malloc((2 * grid->block_count + 1) * sizeof *keys);
     if (keys == NULL || reserve_tiles(grid) != 0) {
         free(keys);
         return -1;
     }
-    for (size_t index = 0; index < grid->block_count; index++)
-        keys[index] = tile_key_of(grid, index);
-    qsort(keys, grid->block_count, sizeof *keys, compare_tile_keys);
+    order_blocks(grid, keys, keys + grid->block_count);
     cut_tiles(grid, keys);
     free(keys);
     grid->tiles_stale = false;
+    grid->tiled_count = grid->block_count;
     return 0;
 }
 
@@ -167,6 +191,7 @@ static void drop_empty_blocks(struct sparse_grid *grid)
             grid->blocks[kept++] = grid->blocks[index];
     }
     grid->block_count = kept;
+    grid->tiled_count = 0;
     grid->tiles_stale = true;
 }
 

@@ -35,14 +35,17 @@ struct sparse_grid {
     size_t colour_begin[TILE_COLOURS + 1];
     uint32_t *tile_blocks; /* [block_count] */
     size_t tile_block_capacity;
-    bool tiles_stale; /* blocks were added or dropped */
-    uint32_t row_max; /* largest row_count ever needed by a chunk */
-    void *slab;       /* the packed chunks; owned */
+    bool tiles_stale;   /* blocks were added or dropped */
+    size_t tiled_count; /* blocks that tile_blocks holds in order */
+    uint32_t row_max;   /* largest row_count ever needed by a chunk */
+    void *slab;         /* the packed chunks; owned */
     size_t slab_bytes;
     size_t loose_count; /* chunks made since the last packing */
 };
 
 void sparse_grid_release(struct sparse_grid *grid);
+/* Index of the block that holds a cell (not negative), or BLOCK_NONE. */
+uint32_t sparse_grid_find_block(const struct sparse_grid *grid, const int32_t cell[3]);
 /* Index of the block that holds a cell, made with its node blocks if missing. BLOCK_NONE without
  * memory. Pointers to blocks and node values are void afterwards. */
 uint32_t sparse_grid_require_block(struct sparse_grid *grid, const int32_t cell[3]);
