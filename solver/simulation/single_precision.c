@@ -129,7 +129,7 @@ enum talus_status single_precision_check(const struct run *run, double time_step
             "bodies move so slowly for the time step that the rounding of positions takes "
             "too large a share of their motion",
             estimate.motion_error,
-            ", a larger time_step, a softer material, a finer cell, or an initial_stress "
+            ", a larger time_step, a softer material, or an initial_stress "
             "instead of settling");
     if (estimate.force_noise > NOISE_LIMIT)
         return refuse(error,
