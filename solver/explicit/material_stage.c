@@ -139,6 +139,7 @@ static void shift_strain(const struct run *run, const struct particle_block *blo
                          struct block_scratch *scratch, size_t count, const real *weight)
 {
     real *stored[6] = {NULL};
+    assert(run->strain_components >= 3 && run->strain_components <= 6);
     for (uint32_t component = 0; component < run->strain_components; component++)
         stored[component] = particle_values(&run->grid.layout, block, PARTICLE_STRAIN, component);
     if (!run->finite_strain)
