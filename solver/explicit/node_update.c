@@ -29,20 +29,38 @@ static void kick_block(struct run *run, size_t block, double factor)
     }
 }
 
+static void hold_back_chunk(struct run *run, size_t chunk, double factor)
+{
+    const size_t begin = chunk * WALL_CHUNK, end = begin + WALL_CHUNK;
+    wall_nodes_hold_back(run, begin, end < run->wall_node_count ? end : run->wall_node_count,
+                         factor);
+}
+
+/* On the calling thread, like the others whose names end so: libgomp would set up a team for one
+ * thread too, and a small step feels it. */
+static void kick_alone(struct run *run, double factor)
+{
+    for (size_t block = 0; block < run->grid.nodes.count; block++)
+        kick_block(run, block, factor);
+    for (size_t chunk = 0; chunk < wall_chunk_count(run); chunk++)
+        hold_back_chunk(run, chunk, factor);
+}
+
 void run_kick_nodes(struct run *run)
 {
     const double factor = run_force_factor(run);
-#pragma omp parallel num_threads(run->threads) if (run->threads > 1)
+    if (run->threads == 1) {
+        kick_alone(run, factor);
+        return;
+    }
+#pragma omp parallel num_threads(run->threads)
     {
 #pragma omp for schedule(static)
         for (size_t block = 0; block < run->grid.nodes.count; block++)
             kick_block(run, block, factor);
 #pragma omp for schedule(static)
-        for (size_t chunk = 0; chunk < wall_chunk_count(run); chunk++) {
-            const size_t begin = chunk * WALL_CHUNK, end = begin + WALL_CHUNK;
-            wall_nodes_hold_back(run, begin,
-                                 end < run->wall_node_count ? end : run->wall_node_count, factor);
-        }
+        for (size_t chunk = 0; chunk < wall_chunk_count(run); chunk++)
+            hold_back_chunk(run, chunk, factor);
     }
 }
 
@@ -172,26 +190,62 @@ static void book_ramp(struct run *run, double factor)
     run->energy.external -= (1 - factor) * power * run->time_step;
 }
 
-void run_update_nodes(struct run *run)
+/* Free nodes, then walls. */
+static void update_alone(struct run *run, double factor, bool clears)
 {
-    const double factor = run_force_factor(run);
-    const bool ramped = factor < 1; /* then masses are still needed after the walls */
-#pragma omp parallel num_threads(run->threads) if (run->threads > 1)
+    for (size_t chunk = 0; chunk < node_chunk_count(run); chunk++)
+        update_chunk(run, chunk, factor, clears);
+    for (size_t chunk = 0; chunk < wall_chunk_count(run); chunk++)
+        wall_nodes_update(run, chunk, factor);
+}
+
+static void update_together(struct run *run, double factor, bool clears)
+{
+#pragma omp parallel num_threads(run->threads)
     {
 #pragma omp for schedule(static)
         for (size_t chunk = 0; chunk < node_chunk_count(run); chunk++)
-            update_chunk(run, chunk, factor, !ramped);
+            update_chunk(run, chunk, factor, clears);
 #pragma omp for schedule(static)
         for (size_t chunk = 0; chunk < wall_chunk_count(run); chunk++)
             wall_nodes_update(run, chunk, factor);
     }
+}
+
+/* Blocks that the update has not cleared, because the walls or the ramp still needed them. */
+static void clear_block(struct run *run, size_t block, bool ramped)
+{
+    if (ramped || run->block_walled[block])
+        clear_scattered(run, block);
+}
+
+static void clear_alone(struct run *run, bool ramped)
+{
+    for (size_t block = 0; block < run->grid.nodes.count; block++)
+        clear_block(run, block, ramped);
+}
+
+static void clear_together(struct run *run, bool ramped)
+{
+#pragma omp parallel for schedule(static) num_threads(run->threads)
+    for (size_t block = 0; block < run->grid.nodes.count; block++)
+        clear_block(run, block, ramped);
+}
+
+void run_update_nodes(struct run *run)
+{
+    const double factor = run_force_factor(run);
+    const bool ramped = factor < 1; /* then masses are still needed after the walls */
+    if (run->threads == 1)
+        update_alone(run, factor, !ramped);
+    else
+        update_together(run, factor, !ramped);
     book_body_forces(run, factor);
     wall_nodes_sum(run);
     if (ramped)
         book_ramp(run, factor);
-#pragma omp parallel for schedule(static) num_threads(run->threads) if (run->threads > 1)
-    for (size_t block = 0; block < run->grid.nodes.count; block++) {
-        if (ramped || run->block_walled[block])
-            clear_scattered(run, block);
-    }
+    if (run->threads == 1)
+        clear_alone(run, ramped);
+    else
+        clear_together(run, ramped);
 }

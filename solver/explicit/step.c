@@ -122,9 +122,24 @@ static int tiles_at_once(const struct run *run, size_t colour)
     return share < 1 ? 1 : share > MOST ? MOST : (int)share;
 }
 
+/* All tiles on the calling thread, which lie colour after colour. libgomp would set up a team for
+ * one thread too, and a small step feels it. */
+static void first_pass_alone(struct run *run)
+{
+    struct stage_clock *clock = run->scratch[0].clock;
+    stage_clock_start(clock);
+    for (size_t index = 0; index < run->grid.tile_count; index++)
+        kick_tile(run, &run->grid.tiles[index], clock);
+    stage_clock_lap(clock, STAGE_WAIT);
+}
+
 static void first_pass(struct run *run)
 {
-#pragma omp parallel num_threads(run->threads) if (run->threads > 1)
+    if (run->threads == 1) {
+        first_pass_alone(run);
+        return;
+    }
+#pragma omp parallel num_threads(run->threads)
     {
         struct stage_clock *clock = run->scratch[omp_get_thread_num()].clock;
         stage_clock_start(clock);
@@ -138,9 +153,22 @@ static void first_pass(struct run *run)
     }
 }
 
+static void second_pass_alone(struct run *run, bool still)
+{
+    struct block_scratch *scratch = &run->scratch[0];
+    stage_clock_start(scratch->clock);
+    for (size_t index = 0; index < run->grid.tile_count; index++)
+        advance_tile(run, index, scratch, still);
+    stage_clock_lap(scratch->clock, STAGE_WAIT);
+}
+
 static void second_pass(struct run *run, bool still)
 {
-#pragma omp parallel num_threads(run->threads) if (run->threads > 1)
+    if (run->threads == 1) {
+        second_pass_alone(run, still);
+        return;
+    }
+#pragma omp parallel num_threads(run->threads)
     {
         struct block_scratch *scratch = &run->scratch[omp_get_thread_num()];
         stage_clock_start(scratch->clock);
