@@ -9,6 +9,9 @@
 /* Rounding of positions, in cells. */
 #define COVER_MARGIN 1e-9
 
+/* Small parts of a loop over rows, of which the compiler must see the whole. */
+#define FORCE_INLINE __attribute__((always_inline)) static inline
+
 /* What must still be asked of the particles of a block, as bits. */
 enum question { ASK_PLACE = 1, ASK_BOUNDARY = 2, ASK_BODY = 4 };
 
@@ -21,6 +24,7 @@ struct view {
     wide_lanes centre[3];  /* of the cells, by lane [m] */
     double width[3];       /* of a cell [m] */
     const real *position[3], *mass, *volume;
+    double half; /* of its largest particle, in each direction [m]; below 0: not looked for yet */
 };
 
 /* What a probe looks at in a block. */
@@ -59,6 +63,7 @@ static void view_block(const struct run *run, const struct particle_block *block
     view->axis_count = domain->axis_count;
     view->boundary_reach = 0.5 * domain_smallest_cell(domain) * (1 + 1e-9);
     view->slot_count = (size_t)block->row_count * LANE_COUNT;
+    view->half = -1;
     view->mass = particle_values(layout, block, PARTICLE_MASS, 0);
     view->volume = particle_values(layout, block, PARTICLE_VOLUME, 0);
     for (uint32_t axis = 0; axis < domain->axis_count; axis++) {
@@ -130,85 +135,114 @@ static double half_size(const struct run *run, double volume)
     return 0.5 * (axes == 1 ? volume : axes == 2 ? sqrt(volume) : cbrt(volume));
 }
 
-/* Where the particles of a row are on an axis [m]. */
-static wide_lanes row_position(const struct view *view, size_t axis, size_t slot)
+/* Where the particles of a row are [m]; 0 on axes that the domain lacks. */
+struct row {
+    size_t slot;
+    wide_lanes position[3];
+};
+
+FORCE_INLINE struct row row_at(const struct view *view, size_t axis_count, size_t slot)
 {
-    return view->centre[axis] +
-           view->width[axis] * lanes_widen(lanes_load(view->position[axis] + slot));
+    struct row row = {.slot = slot};
+    for (size_t axis = 0; axis < axis_count; axis++)
+        row.position[axis] =
+            view->centre[axis] +
+            view->width[axis] * lanes_widen(lanes_load(view->position[axis] + slot));
+    return row;
 }
 
 /* direction . x of a row: along a probe, or along the normal of a plane. */
-static wide_lanes row_along(const struct view *view, const double direction[3], size_t slot)
+FORCE_INLINE wide_lanes row_along(const struct row *row, size_t axis_count,
+                                  const double direction[3])
 {
     wide_lanes sum = {0};
-    for (size_t axis = 0; axis < view->axis_count; axis++) {
-        if (direction[axis] != 0)
-            sum += direction[axis] * row_position(view, axis, slot);
-    }
+    for (size_t axis = 0; axis < axis_count; axis++)
+        sum += direction[axis] * row->position[axis];
     return sum;
 }
 
-/* Which particles of a row lie on the boundary of a probe. */
-static wide_mask row_on_boundary(const struct look *look, size_t slot)
+/* Which particles of a row lie on a boundary that is no plane. */
+static wide_mask row_on_shape(const struct look *look, size_t slot)
 {
     const struct view *view = look->view;
-    const double reach = view->boundary_reach;
-    if (look->plane != NULL) {
-        const wide_lanes distance = row_along(view, look->plane->normal, slot) - look->plane_offset;
-        return (distance <= reach) & (distance >= -reach);
-    }
     wide_mask mask;
     for (size_t lane = 0; lane < LANE_COUNT; lane++) {
         double position[3];
         run_slot_position(view->run, view->block, slot + lane, position);
         mask[lane] = -(wall_set_distance(&view->run->walls, (size_t)look->probe->on_boundary,
-                                         position) <= reach);
+                                         position) <= view->boundary_reach);
     }
     return mask;
 }
 
 /* Which slots of a row a probe selects; empty ones may be among them. */
-static inline wide_mask row_selected(const struct look *look, size_t slot)
+FORCE_INLINE wide_mask row_selected(const struct look *look, size_t axis_count,
+                                    const struct row *row)
 {
-    if (look->questions == 0)
-        return ~(wide_mask){0};
     const struct talus_probe *probe = look->probe;
-    const struct view *view = look->view;
     wide_mask mask = ~(wide_mask){0};
-    for (size_t axis = 0; (look->questions & ASK_PLACE) != 0 && axis < view->axis_count; axis++) {
-        const wide_lanes position = row_position(view, axis, slot);
-        mask &= (position >= probe->within_min[axis]) & (position <= probe->within_max[axis]);
-    }
+    for (size_t axis = 0; (look->questions & ASK_PLACE) != 0 && axis < axis_count; axis++)
+        mask &= (row->position[axis] >= probe->within_min[axis]) &
+                (row->position[axis] <= probe->within_max[axis]);
     for (size_t lane = 0; (look->questions & ASK_BODY) != 0 && lane < LANE_COUNT; lane++)
-        mask[lane] &= -(int64_t)(view->block->body[slot + lane] == probe->body_index);
-    if ((look->questions & ASK_BOUNDARY) != 0)
-        mask &= row_on_boundary(look, slot);
-    return mask;
+        mask[lane] &= -(int64_t)(look->view->block->body[row->slot + lane] == probe->body_index);
+    if ((look->questions & ASK_BOUNDARY) == 0)
+        return mask;
+    if (look->plane == NULL)
+        return mask & row_on_shape(look, row->slot);
+    const double reach = look->view->boundary_reach;
+    const wide_lanes distance =
+        row_along(row, axis_count, look->plane->normal) - look->plane_offset;
+    return mask & (distance <= reach) & (distance >= -reach);
 }
 
 /* Mass and first moments. Empty slots have no mass. */
-static void add_moments(const struct look *look)
+FORCE_INLINE void add_rows(const struct look *look, size_t axis_count)
 {
     const struct view *view = look->view;
     wide_lanes total = {0}, first[3] = {{0}, {0}, {0}};
     for (size_t slot = 0; slot < view->slot_count; slot += LANE_COUNT) {
-        const wide_mask mask = row_selected(look, slot);
+        const struct row row = row_at(view, axis_count, slot);
+        const wide_mask mask = row_selected(look, axis_count, &row);
         const wide_lanes m = wide_lanes_keep(mask, lanes_widen(lanes_load(view->mass + slot)));
         total += m;
-        for (size_t axis = 0; axis < view->axis_count; axis++)
-            first[axis] += m * row_position(view, axis, slot);
+        for (size_t axis = 0; axis < axis_count; axis++)
+            first[axis] += m * row.position[axis];
     }
     look->sums->mass += wide_lanes_sum(total);
-    for (size_t axis = 0; axis < view->axis_count; axis++)
+    for (size_t axis = 0; axis < axis_count; axis++)
         look->sums->first[axis] += wide_lanes_sum(first[axis]);
 }
 
+/* The number of axes known to the compiler keeps the sums in registers. */
+static void add_moments(const struct look *look)
+{
+    if (look->view->axis_count == 2)
+        add_rows(look, 2);
+    else if (look->view->axis_count == 3)
+        add_rows(look, 3);
+    else
+        add_rows(look, 1);
+}
+
+/* Two rows at a time, which do not wait for each other. */
 static double largest_volume(const struct view *view)
 {
-    wide_lanes largest = {0};
-    for (size_t slot = 0; slot < view->slot_count; slot += LANE_COUNT)
-        largest = wide_lanes_maximum(largest, lanes_widen(lanes_load(view->volume + slot)));
-    return wide_lanes_largest(largest);
+    wide_lanes even = {0}, odd = {0};
+    for (size_t slot = 0; slot < view->slot_count; slot += (size_t)2 * LANE_COUNT) {
+        const size_t next = slot + LANE_COUNT < view->slot_count ? slot + LANE_COUNT : slot;
+        even = wide_lanes_maximum(even, lanes_widen(lanes_load(view->volume + slot)));
+        odd = wide_lanes_maximum(odd, lanes_widen(lanes_load(view->volume + next)));
+    }
+    return wide_lanes_largest(wide_lanes_maximum(even, odd));
+}
+
+/* Half of the largest particle of a block, and a rounding more. */
+static double largest_half(struct view *view)
+{
+    if (view->half < 0)
+        view->half = half_size(view->run, largest_volume(view)) * (1 + 1e-12);
+    return view->half;
 }
 
 static void add_reach(const struct look *look, size_t slot, double reach)
@@ -221,41 +255,61 @@ static void add_reach(const struct look *look, size_t slot, double reach)
     sums->high = reach + half > sums->high ? reach + half : sums->high;
 }
 
-/* True if a particle anywhere in the block would reach beyond what has been found. */
-static bool block_reaches(const struct look *look, double half)
+/* Where the cells of a block begin and end in the direction of a probe [m]. */
+struct span {
+    double low, high;
+};
+
+static struct span block_span(const struct view *view, const struct talus_probe *probe)
 {
-    const struct view *view = look->view;
-    double low = -half, high = half;
+    struct span span = {0, 0};
     for (size_t axis = 0; axis < view->axis_count; axis++) {
         const double edge = (0.5 + COVER_MARGIN) * view->width[axis];
-        const double one = look->probe->along[axis] * (view->centre[axis][0] - edge);
-        const double other = look->probe->along[axis] * (view->centre[axis][LANE_COUNT - 1] + edge);
-        low += one < other ? one : other;
-        high += one < other ? other : one;
+        const double one = probe->along[axis] * (view->centre[axis][0] - edge);
+        const double other = probe->along[axis] * (view->centre[axis][LANE_COUNT - 1] + edge);
+        span.low += one < other ? one : other;
+        span.high += one < other ? other : one;
     }
-    return high > look->sums->high || low < look->sums->low;
+    return span;
+}
+
+/* True if a particle anywhere in the block would reach beyond what has been found. */
+static bool block_reaches(struct view *view, const struct talus_probe *probe,
+                          const struct probe_sums *sums)
+{
+    const double half = largest_half(view);
+    const struct span span = block_span(view, probe);
+    return span.high + half > sums->high || span.low - half < sums->low;
 }
 
 /* Only those few particles are looked at one by one that reach beyond what has been found if they
  * are as large as the largest of the block. */
-static void add_extremes(const struct look *look)
+FORCE_INLINE void stretch_rows(const struct look *look, size_t axis_count)
 {
     const struct view *view = look->view;
     const struct probe_sums *sums = look->sums;
-    const double half = half_size(view->run, largest_volume(view)) * (1 + 1e-12);
-    if (!block_reaches(look, half))
-        return;
     for (size_t slot = 0; slot < view->slot_count; slot += LANE_COUNT) {
-        const wide_lanes reach = row_along(view, look->probe->along, slot);
-        wide_mask beyond = (reach + half > sums->high) | (reach - half < sums->low);
+        const struct row row = row_at(view, axis_count, slot);
+        const wide_lanes reach = row_along(&row, axis_count, look->probe->along);
+        wide_mask beyond = (reach + view->half > sums->high) | (reach - view->half < sums->low);
         if (!wide_lanes_any(beyond))
             continue;
-        beyond &= row_selected(look, slot);
+        beyond &= row_selected(look, axis_count, &row);
         for (size_t lane = 0; lane < LANE_COUNT; lane++) {
             if (beyond[lane] != 0)
                 add_reach(look, slot + lane, reach[lane]);
         }
     }
+}
+
+static void add_extremes(const struct look *look)
+{
+    if (look->view->axis_count == 2)
+        stretch_rows(look, 2);
+    else if (look->view->axis_count == 3)
+        stretch_rows(look, 3);
+    else
+        stretch_rows(look, 1);
 }
 
 static void add_integral(const struct look *look)
@@ -264,7 +318,10 @@ static void add_integral(const struct look *look)
     const size_t components = field_components(look->probe->field);
     for (size_t slot = 0; slot < view->slot_count; slot++) {
         const size_t lane = slot % LANE_COUNT;
-        if (view->block->id[slot] == PARTICLE_NONE || row_selected(look, slot - lane)[lane] == 0)
+        if (view->block->id[slot] == PARTICLE_NONE)
+            continue;
+        const struct row row = row_at(view, view->axis_count, slot - lane);
+        if (row_selected(look, view->axis_count, &row)[lane] == 0)
             continue;
         double values[9] = {0};
         field_values(view->run, view->block, slot, look->probe->field, values);
@@ -273,10 +330,11 @@ static void add_integral(const struct look *look)
     }
 }
 
-static void add_block(const struct view *view, const struct talus_probe *probe,
-                      struct probe_sums *sums)
+static void add_block(struct view *view, const struct talus_probe *probe, struct probe_sums *sums)
 {
     struct look look;
+    if (wants_extremes(probe) && !block_reaches(view, probe, sums))
+        return;
     if (!look_at(view, probe, &look))
         return;
     look.sums = sums;
@@ -288,15 +346,48 @@ static void add_block(const struct view *view, const struct talus_probe *probe,
         add_moments(&look);
 }
 
-void probe_scan(const struct run *run, struct probe_sums *sums)
+/* The outermost block that a probe looks at goes first, so that most others need no look: what is
+ * outermost does not depend on the order. */
+static void add_outermost(const struct run *run, const struct talus_probe *probe,
+                          struct probe_sums *sums)
+{
+    struct view view, outermost;
+    struct look look;
+    double farthest = -INFINITY;
+    for (size_t index = 0; index < run->grid.block_count; index++) {
+        if (run->grid.blocks[index].row_count == 0)
+            continue;
+        view_block(run, &run->grid.blocks[index], &view);
+        const double high = block_span(&view, probe).high;
+        if (high > farthest && look_at(&view, probe, &look)) {
+            farthest = high;
+            outermost = view;
+        }
+    }
+    if (farthest > -INFINITY)
+        add_block(&outermost, probe, sums);
+}
+
+/* Returns true if a probe wants particles. */
+static bool scan_start(const struct run *run, struct probe_sums *sums)
 {
     bool any = false;
-    for (size_t probe = 0; probe < run->scene.probe_count; probe++) {
-        const bool extent = run->scene.probes[probe].kind == TALUS_PROBE_EXTENT;
-        sums[probe] = (struct probe_sums){.low = extent ? INFINITY : -INFINITY, .high = -INFINITY};
-        any = any || wants_particles(&run->scene.probes[probe]);
+    for (size_t index = 0; index < run->scene.probe_count; index++) {
+        const struct talus_probe *probe = &run->scene.probes[index];
+        const bool extent = probe->kind == TALUS_PROBE_EXTENT;
+        sums[index] = (struct probe_sums){.low = extent ? INFINITY : -INFINITY, .high = -INFINITY};
+        if (wants_extremes(probe))
+            add_outermost(run, probe, &sums[index]);
+        any = any || wants_particles(probe);
     }
-    for (size_t index = 0; any && index < run->grid.block_count; index++) {
+    return any;
+}
+
+void probe_scan(const struct run *run, struct probe_sums *sums)
+{
+    if (!scan_start(run, sums))
+        return;
+    for (size_t index = 0; index < run->grid.block_count; index++) {
         struct view view;
         if (run->grid.blocks[index].row_count == 0)
             continue;
@@ -320,10 +411,11 @@ double probe_scan_spread(const struct run *run, const struct talus_probe *probe,
         if (!look_at(&view, probe, &look))
             continue;
         for (size_t slot = 0; slot < view.slot_count; slot += LANE_COUNT) {
-            const wide_lanes away = row_along(&view, probe->along, slot) - mean;
+            const struct row row = row_at(&view, view.axis_count, slot);
+            const wide_lanes away = row_along(&row, view.axis_count, probe->along) - mean;
             const wide_lanes m = lanes_widen(lanes_load(view.mass + slot));
-            spread +=
-                wide_lanes_keep(row_selected(&look, slot), m) * wide_lanes_maximum(away, -away);
+            spread += wide_lanes_keep(row_selected(&look, view.axis_count, &row), m) *
+                      wide_lanes_maximum(away, -away);
         }
     }
     return wide_lanes_sum(spread);

@@ -21,10 +21,15 @@ static inline wide_lanes lanes_widen(lanes value)
 #endif
 }
 
+/* The larger one; where one is not a number, b. */
 static inline wide_lanes wide_lanes_maximum(wide_lanes a, wide_lanes b)
 {
+#if defined(__AVX__) && !defined(TALUS_SINGLE)
+    return __builtin_ia32_maxpd256(a, b);
+#else
     const wide_mask first = a > b;
     return (wide_lanes)((first & (wide_mask)a) | (~first & (wide_mask)b));
+#endif
 }
 
 /* True if a lane is set. */
