@@ -111,6 +111,7 @@ __attribute__((always_inline)) static inline void fetch_target(const struct run 
     const struct particle_block *block = &grid->blocks[entry->block];
     int32_t cell[3] = {block->cell[0] + (int32_t)(entry->slot % LANE_COUNT), block->cell[1],
                        block->cell[2]};
+    assert(grid->domain.axis_count <= 3);
     for (uint32_t axis = 0; axis < grid->domain.axis_count; axis++) {
         const real position =
             particle_values(&grid->layout, block, PARTICLE_POSITION, axis)[entry->slot];

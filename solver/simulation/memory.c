@@ -49,7 +49,8 @@ static double doubled(double first, double count)
 double simulation_memory_estimate(const struct run *run, size_t number, double particles,
                                   double cells)
 {
-    const double lanes_of_block = (double)(sizeof(lanes) / number);
+    const size_t lane_count = sizeof(lanes) / number;
+    const double lanes_of_block = (double)lane_count;
     const double per_particle = layout_particle_bytes(&run->grid.layout, number);
     const double per_node_block = (double)run->grid.nodes.layout.component_count * sizeof(lanes) +
                                   sizeof *run->grid.nodes.place;

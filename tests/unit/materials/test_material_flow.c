@@ -39,7 +39,7 @@ static bool check_update(const struct fixture *fixture, struct slots *slots, con
         bool changed = false;
         for (size_t component = 0; component < slots->batch.component_count; component++)
             changed = changed || memcmp(&trial[component][slot],
-                                        &slots->batch.strain[component][slot], sizeof(double));
+                                        &slots->batch.strain[component][slot], sizeof(double)) != 0;
         assert_true(material->plastic ? plastic_strain >= 0.0 : plastic_strain == untouched);
         assert_true(material->dissipates ? dissipation >= 0.0 : dissipation == untouched);
         assert_true(!changed || plastic_strain > 0.0);

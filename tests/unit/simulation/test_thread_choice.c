@@ -47,7 +47,7 @@ static void what_pays_stays(void **state)
     (void)state;
     thread_choice_init(&choice);
     const struct outcome outcome = take_steps(&choice, 1e-3, 3e-4);
-    assert_true(outcome.many > 0.99 * (STEPS / 2));
+    assert_true(outcome.many > 0.99 * (0.5 * STEPS));
     assert_true(outcome.seconds < 1.02 * STEPS * 3e-4);
 }
 
@@ -58,12 +58,12 @@ static void shared_cores_leave_one_thread(void **state)
     (void)state;
     thread_choice_init(&choice);
     const struct outcome outcome = take_steps(&choice, 1e-3, 3e-2);
-    assert_true(outcome.many < 0.001 * (STEPS / 2));
+    assert_true(outcome.many < 0.001 * (0.5 * STEPS));
     /* The first steps, before the first trial, are lost. */
     assert_true(outcome.seconds - 10 * 3e-2 < 1.02 * STEPS * 1e-3);
     /* The cores get free again. */
     const struct outcome after = take_steps(&choice, 1e-3, 3e-4);
-    assert_true(after.many > 0.99 * (STEPS / 2));
+    assert_true(after.many > 0.99 * (0.5 * STEPS));
 }
 
 int main(void)
