@@ -213,7 +213,7 @@ class WholeRun(DaemonTest):
 
 class KilledRuns(DaemonTest):
     real = True
-    scene = falling_block(duration=0.6 / PATIENCE ** 2, cell=0.02, checkpoints=0.2)
+    scene = falling_block(duration=0.6 / PATIENCE ** 2, cell=0.01, checkpoints=0.2)
 
     @classmethod
     def setUpClass(cls):
@@ -323,7 +323,7 @@ class ByHand(unittest.TestCase):
             self.assertEqual(self.in_folder(folder, scene).returncode, 11)
 
     def test_terminated_then_resumed(self):
-        scene = falling_block(0.6 / PATIENCE ** 2, 0.02)
+        scene = falling_block(0.6 / PATIENCE ** 2, 0.01)
         with tempfile.TemporaryDirectory() as folder:
             self.assertEqual(self.in_folder(folder, scene).returncode, 0)
             with open(os.path.join(folder, "out", "history.bin"), "rb") as file:
