@@ -6,6 +6,7 @@
 #include "explicit/run.h"
 #include "explicit/stage_clock.h"
 #include "math/sticky.h"
+#include "state/wide_lanes.h"
 
 #include <assert.h>
 #include <math.h>
@@ -34,18 +35,6 @@ static void record_displacement(const struct run *run, const struct particle_blo
         for (size_t slot = 0; slot < count; slot++)
             displacement[slot] += width * scratch->displacement[axis][slot];
     }
-}
-
-/* What the material has dissipated; summed by lanes, so that the sum does not depend on the vector
- * width. */
-static void book_dissipation(const struct block_scratch *scratch, size_t count,
-                             struct tile_sums *sums)
-{
-    lanes sum = {0};
-    for (size_t slot = 0; slot < count; slot += LANE_COUNT)
-        sum +=
-            lanes_load(scratch->reference_volume + slot) * lanes_load(scratch->dissipation + slot);
-    sums->plastic_energy += (double)lanes_sum(sum);
 }
 
 static void record_fields(const struct run *run, const struct particle_block *block,
@@ -137,29 +126,16 @@ static struct reach move(const struct run *run, const struct particle_block *blo
 
 static bool is_eliminated(const struct run *run, const struct particle_block *block, size_t slot)
 {
-    const struct domain *domain = &run->grid.domain;
-    double position[3] = {0, 0, 0};
-    for (uint32_t axis = 0; axis < domain->axis_count; axis++) {
-        const int32_t cell = block->cell[axis] + (axis == 0 ? (int32_t)(slot % LANE_COUNT) : 0);
-        position[axis] = domain_position(
-            domain, axis, cell,
-            particle_values(&run->grid.layout, block, PARTICLE_POSITION, axis)[slot]);
-    }
+    double position[3];
+    sparse_grid_slot_position(&run->grid, block, slot, position);
     return wall_set_eliminates(&run->walls, position, block->body == NULL ? 0 : block->body[slot]);
 }
 
-static void collect_slot(struct run *run, const struct particle_block *block, uint32_t block_index,
-                         struct block_scratch *scratch, size_t slot,
-                         const struct scatter_source *source, struct tile *tile)
+/* Puts the particle of a slot into the outbox. */
+static void collect_slot(struct run *run, uint32_t block_index, struct block_scratch *scratch,
+                         size_t slot, bool eliminated, const struct scatter_source *source,
+                         struct tile *tile)
 {
-    bool inside = true;
-    for (uint32_t axis = 0; axis < run->grid.domain.axis_count; axis++)
-        inside =
-            inside && real_absolute(particle_values(&run->grid.layout, block, PARTICLE_POSITION,
-                                                    axis)[slot]) <= (real)0.5;
-    const bool eliminated = block->eliminates && is_eliminated(run, block, slot);
-    if (inside && !eliminated)
-        return;
     struct outbox_record *record = &run->outbox[tile->outbox_begin + tile->outbox_count++];
     record->block = block_index;
     record->slot = (uint32_t)slot;
@@ -172,16 +148,15 @@ static void collect_slot(struct run *run, const struct particle_block *block, ui
     scratch->mass[slot] = 0;
 }
 
-/* Slots of a row that reach beyond their cells. */
-static bool row_leaves(const struct run *run, const struct particle_block *block, size_t slot)
+/* The lanes of a row that reach beyond their cells, or whose position is not a number. */
+static lane_mask row_leaving(const struct run *run, const struct particle_block *block, size_t row)
 {
     lane_mask outside = {0};
-    for (uint32_t axis = 0; axis < run->grid.domain.axis_count; axis++)
-        outside |=
-            ~(lanes_absolute(lanes_load(
-                  particle_values(&run->grid.layout, block, PARTICLE_POSITION, axis) + slot)) <=
-              (real)0.5);
-    return lanes_any(outside);
+    for (uint32_t axis = 0; axis < run->grid.domain.axis_count; axis++) {
+        const real *position = particle_values(&run->grid.layout, block, PARTICLE_POSITION, axis);
+        outside |= ~(lanes_absolute(lanes_load(position + row)) <= (real)0.5);
+    }
+    return outside;
 }
 
 /* Puts the particles that left their cells into the outbox; they scatter after they have moved. */
@@ -192,11 +167,16 @@ static void collect_crossers(struct run *run, const struct particle_block *block
     memcpy(scratch->mass, source->mass, count * sizeof(real));
     source->mass = scratch->mass;
     for (size_t row = 0; row < count; row += LANE_COUNT) {
-        if (!block->eliminates && !row_leaves(run, block, row))
+        const lane_mask leaving = row_leaving(run, block, row);
+        if (!block->eliminates && !lanes_any(leaving))
             continue;
-        for (size_t slot = row; slot < row + LANE_COUNT; slot++) {
-            if (block->id[slot] != PARTICLE_NONE)
-                collect_slot(run, block, block_index, scratch, slot, source, tile);
+        for (size_t lane = 0; lane < LANE_COUNT; lane++) {
+            const size_t slot = row + lane;
+            if (block->id[slot] == PARTICLE_NONE)
+                continue;
+            const bool eliminated = block->eliminates && is_eliminated(run, block, slot);
+            if (leaving[lane] != 0 || eliminated)
+                collect_slot(run, block_index, scratch, slot, eliminated, source, tile);
         }
     }
 }
@@ -235,7 +215,8 @@ static void stress_block(struct run *run, struct block_scratch *scratch,
     if (outcome.flowed)
         kinematics_store(run, block, scratch);
     if (outcome.dissipated)
-        book_dissipation(scratch, count, sums);
+        sums->plastic_energy +=
+            lanes_weighted_sum(scratch->reference_volume, scratch->dissipation, count);
     record_fields(run, block, scratch, count, outcome.flowed);
     fetch_portion(&scratch->ahead);
     stage_clock_lap(scratch->clock, STAGE_STORE);

@@ -9,15 +9,6 @@
 #include <omp.h>
 #include <string.h>
 
-/* Sum over the slots of weight x value. */
-static double weighted_sum(const real *weight, const real *value, size_t count)
-{
-    wide_lanes sum = {0};
-    for (size_t slot = 0; slot < count; slot += LANE_COUNT)
-        sum += lanes_widen(lanes_load(weight + slot)) * lanes_widen(lanes_load(value + slot));
-    return wide_lanes_sum(sum);
-}
-
 static double kinetic_energy(const struct run *run, const struct particle_block *block,
                              const real *mass, size_t count)
 {
@@ -65,7 +56,7 @@ void run_add_energy(const struct run *run, const struct particle_block *block,
     const real *mass = particle_values(&run->grid.layout, block, PARTICLE_MASS, 0);
     real *energy = scratch->dissipation;
     material_stage_energy(run, block, scratch, energy);
-    sums->strain += weighted_sum(scratch->reference_volume, energy, count);
+    sums->strain += lanes_weighted_sum(scratch->reference_volume, energy, count);
     sums->kinetic += kinetic_energy(run, block, mass, count);
     sums->potential += potential_energy(run, block, mass, count);
 }

@@ -19,9 +19,6 @@
 #define UNROLL
 #endif
 
-/* Place of component (row, column) in the order xx yy zz xy yz xz. */
-static const unsigned char symmetric_index[3][3] = {{0, 3, 5}, {3, 1, 4}, {5, 4, 2}};
-
 /* g of one row of slots; `axes` is a constant where this is inlined. */
 TALUS_INLINE void load_increment(const struct block_scratch *scratch, size_t slot, size_t axes,
                                  lanes g[3][3])
@@ -58,7 +55,7 @@ TALUS_INLINE void push_forward(size_t axes, lanes g[3][3], real *const e[6], siz
     {
         UNROLL for (size_t column = 0; column < axes; column++)
         {
-            old[row][column] = lanes_load(e[symmetric_index[row][column]] + slot);
+            old[row][column] = lanes_load(e[sym3_component[row][column]] + slot);
         }
     }
     UNROLL for (size_t row = 0; row < axes; row++)
@@ -81,7 +78,7 @@ TALUS_INLINE void push_forward(size_t axes, lanes g[3][3], real *const e[6], siz
             {
                 sum += half[row][k] * g[column][k];
             }
-            lanes_store(e[symmetric_index[row][column]] + slot, sum);
+            lanes_store(e[sym3_component[row][column]] + slot, sum);
         }
     }
 }
@@ -110,6 +107,25 @@ static void push(const struct run *run, size_t count, const struct block_scratch
         push_block(count, 1, scratch, e);
 }
 
+/* tensor += sym(g). */
+static void add_symmetric(const struct run *run, const struct block_scratch *scratch, size_t count,
+                          real *const tensor[6])
+{
+    const size_t axes = run->grid.domain.axis_count;
+    assert(axes >= 1 && axes <= 3);
+    for (size_t row = 0; row < axes; row++) {
+        for (size_t column = row; column < axes; column++) {
+            const real *a = scratch->gradient[3 * row + column];
+            const real *b = scratch->gradient[3 * column + row];
+            real *sum = tensor[sym3_component[row][column]];
+            for (size_t slot = 0; slot < count; slot += LANE_COUNT)
+                lanes_store(sum + slot,
+                            lanes_load(sum + slot) +
+                                (real)0.5 * (lanes_load(a + slot) + lanes_load(b + slot)));
+        }
+    }
+}
+
 /* d = sym(g) / dt. */
 static void symmetric_rate(size_t count, size_t axes, const struct block_scratch *scratch,
                            real inverse_step)
@@ -119,7 +135,7 @@ static void symmetric_rate(size_t count, size_t axes, const struct block_scratch
         for (size_t column = row; column < axes; column++) {
             const real *a = scratch->gradient[3 * row + column];
             const real *b = scratch->gradient[3 * column + row];
-            real *out = scratch->rate[symmetric_index[row][column]];
+            real *out = scratch->rate[sym3_component[row][column]];
             for (size_t slot = 0; slot < count; slot += LANE_COUNT)
                 lanes_store(out + slot, (real)0.5 * inverse_step *
                                             (lanes_load(a + slot) + lanes_load(b + slot)));
@@ -143,12 +159,10 @@ static void spin_rate(size_t count, size_t axes, const struct block_scratch *scr
     }
 }
 
-/* Which material a slot belongs to. */
 static const struct run_material *material_of(const struct run *run,
                                               const struct particle_block *block, size_t slot)
 {
-    const size_t body = block->body == NULL ? 0 : block->body[slot];
-    return &run->materials[run->body_material[body]];
+    return &run->materials[material_of_slot(run, block, slot)];
 }
 
 static void reference_volumes(const struct run *run, const struct particle_block *block,
@@ -240,18 +254,7 @@ static void advance_tensor(const struct run *run, struct block_scratch *scratch,
         (void)log_strain_batch(count, run->strain_components, e, scratch->strain);
         return;
     }
-    const size_t axes = run->grid.domain.axis_count;
-    for (size_t row = 0; row < axes; row++) {
-        for (size_t column = row; column < axes; column++) {
-            const real *a = scratch->gradient[3 * row + column];
-            const real *b = scratch->gradient[3 * column + row];
-            real *out = e[symmetric_index[row][column]];
-            for (size_t slot = 0; slot < count; slot += LANE_COUNT)
-                lanes_store(out + slot,
-                            lanes_load(out + slot) +
-                                (real)0.5 * (lanes_load(a + slot) + lanes_load(b + slot)));
-        }
-    }
+    add_symmetric(run, scratch, count, e);
     for (size_t component = 0; component < run->strain_components; component++)
         memcpy(scratch->strain[component], e[component], count * sizeof(real));
 }
@@ -304,17 +307,11 @@ static void advance_gradient(const struct run *run, const struct particle_block 
 static void advance_total_strain(const struct run *run, const struct particle_block *block,
                                  const struct block_scratch *scratch, size_t count)
 {
-    const size_t axes = run->grid.domain.axis_count;
-    assert(axes >= 1 && axes <= 3);
-    for (size_t row = 0; row < axes; row++) {
-        for (size_t column = row; column < axes; column++) {
-            real *total = particle_values(&run->grid.layout, block, PARTICLE_TOTAL_STRAIN,
-                                          symmetric_index[row][column]);
-            for (size_t slot = 0; slot < count; slot++)
-                total[slot] += (real)0.5 * (scratch->gradient[3 * row + column][slot] +
-                                            scratch->gradient[3 * column + row][slot]);
-        }
-    }
+    const struct particle_layout *layout = &run->grid.layout;
+    real *total[6] = {NULL};
+    for (uint32_t index = 0; index < layout->component_count[PARTICLE_TOTAL_STRAIN]; index++)
+        total[index] = particle_values(layout, block, PARTICLE_TOTAL_STRAIN, index);
+    add_symmetric(run, scratch, count, total);
 }
 
 /* Strains that are kept for output only. */

@@ -41,55 +41,22 @@ static const real *weights_of(const struct run *run, const struct particle_block
     return scratch->weight;
 }
 
-/* exp(2 shift) - 1 for |2 shift| <= SERIES_LIMIT. */
-static inline lanes stretch_series(lanes shift)
-{
-    static const real inverse_factorial[] = {(real)(1.0 / 479001600),
-                                             (real)(1.0 / 39916800),
-                                             (real)(1.0 / 3628800),
-                                             (real)(1.0 / 362880),
-                                             (real)(1.0 / 40320),
-                                             (real)(1.0 / 5040),
-                                             (real)(1.0 / 720),
-                                             (real)(1.0 / 120),
-                                             (real)(1.0 / 24),
-                                             (real)(1.0 / 6),
-                                             (real)0.5};
-    const lanes x = 2 * shift;
-    lanes sum = lanes_splat(inverse_factorial[0]);
-    for (size_t k = 1; k < sizeof inverse_factorial / sizeof inverse_factorial[0]; k++)
-        sum = sum * x + inverse_factorial[k];
-    return x + x * (x * sum);
-}
-
-static lanes stretch_of(lanes shift, bool small)
-{
-    if (small)
-        return stretch_series(shift);
-    lanes stretch = shift;
-    for (int lane = 0; lane < LANE_COUNT; lane++)
-        stretch[lane] = (real)expm1(2.0 * (double)shift[lane]);
-    return stretch;
-}
-
 static inline lanes trace_at(real *const tensor[6], size_t slot)
 {
     return lanes_load(tensor[0] + slot) + lanes_load(tensor[1] + slot) +
            lanes_load(tensor[2] + slot);
 }
 
-/* Mean trace of each cell; *largest: a bound on how far a particle of the block is from it. */
-static lanes mean_trace(size_t count, const real *weight, real *const tensor[6], real *largest)
+/* Mean trace of each cell. */
+static lanes mean_trace(size_t count, const real *weight, real *const tensor[6])
 {
-    lanes total = {0}, sum = {0}, size = {0};
+    lanes total = {0}, sum = {0};
     for (size_t slot = 0; slot < count; slot += LANE_COUNT) {
         const lanes trace = trace_at(tensor, slot);
         const lanes w = lanes_load(weight + slot);
         total += w;
         sum += w * trace;
-        size = lanes_maximum(size, lanes_absolute(trace));
     }
-    *largest = 2 * lanes_largest(size);
     return sum / lanes_select(total > 0, total, lanes_splat(1));
 }
 
@@ -101,22 +68,25 @@ static inline lanes shift_at(const real *weight, real *const tensor[6], size_t s
 }
 
 /* Brings the trace of the logarithmic strain to the mean of the cell, and the stored form with it:
- * b <- exp(2 shift) b, e <- e + s e + s/2. `components` is a constant where this is inlined. */
+ * b <- exp(2 shift) b, e <- e + s e + s/2. `components` is a constant where this is inlined;
+ * stretch [count] is free. */
 TALUS_INLINE void shift_finite(size_t count, size_t components, const real *weight,
-                               real *const strain[6], real *const stored[6])
+                               real *const strain[6], real *const stored[6], real *stretch)
 {
-    real largest = 0;
-    const lanes mean = mean_trace(count, weight, strain, &largest);
-    const bool small = largest <= (real)SERIES_LIMIT;
+    const lanes mean = mean_trace(count, weight, strain);
     for (size_t slot = 0; slot < count; slot += LANE_COUNT) {
         const lanes shift = shift_at(weight, strain, slot, mean);
-        const lanes stretch = stretch_of(shift, small);
+        lanes_store(stretch + slot, 2 * shift);
+        for (size_t component = 0; component < 3; component++)
+            lanes_store(strain[component] + slot, lanes_load(strain[component] + slot) + shift);
+    }
+    expm1_array(count, stretch, stretch);
+    for (size_t slot = 0; slot < count; slot += LANE_COUNT) {
+        const lanes s = lanes_load(stretch + slot);
         for (size_t component = 0; component < components; component++) {
             const lanes e = lanes_load(stored[component] + slot);
             const lanes half = lanes_splat(component < 3 ? (real)0.5 : 0);
-            lanes_store(stored[component] + slot, e + stretch * (e + half));
-            if (component < 3)
-                lanes_store(strain[component] + slot, lanes_load(strain[component] + slot) + shift);
+            lanes_store(stored[component] + slot, e + s * (e + half));
         }
     }
 }
@@ -124,8 +94,7 @@ TALUS_INLINE void shift_finite(size_t count, size_t components, const real *weig
 static void shift_small(size_t count, const real *weight, real *const strain[6],
                         real *const stored[6])
 {
-    real largest = 0;
-    const lanes mean = mean_trace(count, weight, strain, &largest);
+    const lanes mean = mean_trace(count, weight, strain);
     for (size_t slot = 0; slot < count; slot += LANE_COUNT) {
         const lanes shift = shift_at(weight, strain, slot, mean);
         for (size_t component = 0; component < 3; component++) {
@@ -145,11 +114,11 @@ static void shift_strain(const struct run *run, const struct particle_block *blo
     if (!run->finite_strain)
         shift_small(count, weight, scratch->strain, stored);
     else if (run->strain_components == 6)
-        shift_finite(count, 6, weight, scratch->strain, stored);
+        shift_finite(count, 6, weight, scratch->strain, stored, scratch->mean);
     else if (run->strain_components == 4)
-        shift_finite(count, 4, weight, scratch->strain, stored);
+        shift_finite(count, 4, weight, scratch->strain, stored, scratch->mean);
     else
-        shift_finite(count, 3, weight, scratch->strain, stored);
+        shift_finite(count, 3, weight, scratch->strain, stored, scratch->mean);
 }
 
 /* Replaces the volumetric trial strain by its cell average: strain and stored form,
@@ -173,8 +142,7 @@ static void average_strain(const struct run *run, const struct particle_block *b
 /* Replaces the mean stress by its cell average. */
 static void average_stress(struct block_scratch *scratch, size_t count, const real *weight)
 {
-    real largest = 0;
-    const lanes mean = mean_trace(count, weight, scratch->stress, &largest);
+    const lanes mean = mean_trace(count, weight, scratch->stress);
     for (size_t slot = 0; slot < count; slot += LANE_COUNT) {
         const lanes shift = shift_at(weight, scratch->stress, slot, mean);
         for (size_t component = 0; component < 3; component++)

@@ -20,11 +20,4 @@ struct material_outcome material_stage_run(struct run *run, const struct particl
 void material_stage_energy(const struct run *run, const struct particle_block *block,
                            struct block_scratch *scratch, real *energy);
 
-/* The material of a slot. */
-static inline size_t material_of_slot(const struct run *run, const struct particle_block *block,
-                                      size_t slot)
-{
-    return run->body_material[block->body == NULL ? 0 : block->body[slot]];
-}
-
 #endif

@@ -2,6 +2,7 @@
 /* What happens at the nodes between the passes over particles: forces to velocity increments,
  * momentum to velocity, walls. Node blocks are independent. */
 #include "explicit/node_passes.h"
+#include "state/wide_lanes.h"
 
 #include <assert.h>
 #include <math.h>
@@ -13,18 +14,38 @@ double run_force_factor(const struct run *run)
     return ramp > 0 ? fmin(1.0, (run->time + run->time_step) / ramp) : 1.0;
 }
 
-static void kick_block(struct run *run, size_t block, double factor)
+/* Nodes of a block that are heavy enough to carry motion, and 1 / mass of these. */
+struct inertia {
+    lane_mask moves;
+    lanes inverse_mass;
+};
+
+static struct inertia inertia_of(const struct run *run, size_t block)
 {
     const struct node_blocks *nodes = &run->grid.nodes;
     const lanes mass = lanes_load(node_values(nodes, block, nodes->layout.mass));
     const lane_mask moves = mass > (real)run->mass_cutoff;
-    const lanes inverse = (real)1.0 / lanes_select(moves, mass, lanes_splat((real)1.0));
-    const real time_step = (real)run->time_step;
+    return (struct inertia){moves, (real)1.0 / lanes_select(moves, mass, lanes_splat((real)1.0))};
+}
+
+/* dt (f_int / m + g) of a block along one axis, without walls. */
+static lanes whole_increment(const struct run *run, size_t block, const struct inertia *inertia,
+                             uint32_t axis, double factor)
+{
+    const struct node_blocks *nodes = &run->grid.nodes;
+    const lanes force = lanes_load(node_values(nodes, block, nodes->layout.force + axis));
+    return (real)run->time_step *
+           (force * inertia->inverse_mass + (real)(factor * run->scene.gravity[axis]));
+}
+
+static void kick_block(struct run *run, size_t block, double factor)
+{
+    const struct node_blocks *nodes = &run->grid.nodes;
+    const struct inertia inertia = inertia_of(run, block);
     for (uint32_t axis = 0; axis < run->grid.domain.axis_count; axis++) {
-        const lanes force = lanes_load(node_values(nodes, block, nodes->layout.force + axis));
-        const lanes kick =
-            time_step * (force * inverse + (real)(factor * run->scene.gravity[axis]));
-        lanes_store(node_values(nodes, block, nodes->layout.kick + axis), lanes_keep(moves, kick));
+        const lanes kick = whole_increment(run, block, &inertia, axis, factor);
+        lanes_store(node_values(nodes, block, nodes->layout.kick + axis),
+                    lanes_keep(inertia.moves, kick));
         lanes_store(node_values(nodes, block, nodes->layout.momentum + axis), lanes_splat(0.0));
     }
 }
@@ -36,12 +57,15 @@ static void hold_back_chunk(struct run *run, size_t chunk, double factor)
                          factor);
 }
 
-/* On the calling thread, like the others whose names end so: libgomp would set up a team for one
- * thread too, and a small step feels it. */
-static void kick_alone(struct run *run, double factor)
+/* What is called by all threads of a team shares its loops among them; called by one thread without
+ * a team, which libgomp would set up for one thread too and a small step feels, it does them all.
+ */
+static void kick_nodes(struct run *run, double factor)
 {
+#pragma omp for schedule(static)
     for (size_t block = 0; block < run->grid.nodes.count; block++)
         kick_block(run, block, factor);
+#pragma omp for schedule(static)
     for (size_t chunk = 0; chunk < wall_chunk_count(run); chunk++)
         hold_back_chunk(run, chunk, factor);
 }
@@ -50,18 +74,11 @@ void run_kick_nodes(struct run *run)
 {
     const double factor = run_force_factor(run);
     if (run->threads == 1) {
-        kick_alone(run, factor);
+        kick_nodes(run, factor);
         return;
     }
 #pragma omp parallel num_threads(run->threads)
-    {
-#pragma omp for schedule(static)
-        for (size_t block = 0; block < run->grid.nodes.count; block++)
-            kick_block(run, block, factor);
-#pragma omp for schedule(static)
-        for (size_t chunk = 0; chunk < wall_chunk_count(run); chunk++)
-            hold_back_chunk(run, chunk, factor);
-    }
+    kick_nodes(run, factor);
 }
 
 /* Momentum -> velocity before the walls; local damping goes into the correction. With `last` the
@@ -71,16 +88,11 @@ static void update_block(struct run *run, size_t block, double factor)
     const struct node_blocks *nodes = &run->grid.nodes;
     const bool last = run->scene.solver.stress_update == TALUS_STRESS_LAST;
     const real damping = (real)run->scene.solver.local_damping;
-    const lanes mass = lanes_load(node_values(nodes, block, nodes->layout.mass));
-    const lane_mask moves = mass > (real)run->mass_cutoff;
-    const lanes inverse = (real)1.0 / lanes_select(moves, mass, lanes_splat((real)1.0));
-    const real time_step = (real)run->time_step;
+    const struct inertia inertia = inertia_of(run, block);
     for (uint32_t axis = 0; axis < run->grid.domain.axis_count; axis++) {
         real *momentum = node_values(nodes, block, nodes->layout.momentum + axis);
-        const lanes force = lanes_load(node_values(nodes, block, nodes->layout.force + axis));
-        const lanes whole =
-            time_step * (force * inverse + (real)(factor * run->scene.gravity[axis]));
-        const lanes start = lanes_load(momentum) * inverse;
+        const lanes whole = whole_increment(run, block, &inertia, axis, factor);
+        const lanes start = lanes_load(momentum) * inertia.inverse_mass;
         lanes correction = last ? whole : lanes_splat(0.0);
         if (damping > 0) {
             /* Opposes the motion by a share of the out-of-balance force, and never reverses it. */
@@ -90,11 +102,11 @@ static void update_block(struct run *run, size_t block, double factor)
             const lanes taken = lanes_select(brake < speed, brake, speed);
             correction -= lanes_select(moving > (real)0.0, taken, -taken);
         }
-        correction = lanes_keep(moves, correction);
+        correction = lanes_keep(inertia.moves, correction);
         lanes_store(node_values(nodes, block, nodes->layout.correction + axis), correction);
         lanes_store(momentum, lanes_splat(0.0)); /* may be the place of the velocity */
         lanes_store(node_values(nodes, block, nodes->layout.velocity + axis),
-                    lanes_keep(moves, start) + correction);
+                    lanes_keep(inertia.moves, start) + correction);
     }
 }
 
@@ -137,18 +149,18 @@ static void update_chunk(struct run *run, size_t chunk, double factor, bool clea
     const size_t begin = chunk * NODE_CHUNK;
     const bool damped = run->scene.solver.local_damping > 0;
     struct node_sums *sums = &run->node_sums[chunk];
-    lanes mass_sum = {0};
+    wide_lanes mass_sum = {0};
     memset(sums, 0, sizeof *sums);
     for (size_t block = begin; block < begin + NODE_CHUNK && block < nodes->count; block++) {
         const lanes mass = lanes_load(node_values(nodes, block, nodes->layout.mass));
-        mass_sum += lanes_keep(mass > (real)run->mass_cutoff, mass);
+        mass_sum += lanes_widen(lanes_keep(mass > (real)run->mass_cutoff, mass));
         update_block(run, block, factor);
         if (damped)
             sum_damping(run, block, factor, sums);
         if (clears && !run->block_walled[block])
             clear_scattered(run, block);
     }
-    sums->mass = (double)lanes_sum(mass_sum);
+    sums->mass = wide_lanes_sum(mass_sum);
 }
 
 /* Gravity and local damping act at every node: their impulses, for the audit. */
@@ -190,62 +202,50 @@ static void book_ramp(struct run *run, double factor)
     run->energy.external -= (1 - factor) * power * run->time_step;
 }
 
-/* Free nodes, then walls. */
-static void update_alone(struct run *run, double factor, bool clears)
+/* Free nodes, then walls; by a team or alone, as kick_nodes. */
+static void update_nodes(struct run *run, double factor, bool clears)
 {
+#pragma omp for schedule(static)
     for (size_t chunk = 0; chunk < node_chunk_count(run); chunk++)
         update_chunk(run, chunk, factor, clears);
+#pragma omp for schedule(static)
     for (size_t chunk = 0; chunk < wall_chunk_count(run); chunk++)
         wall_nodes_update(run, chunk, factor);
 }
 
-static void update_together(struct run *run, double factor, bool clears)
+/* Blocks that the update has not cleared, because the walls or the ramp still needed them. */
+static void clear_nodes(struct run *run, bool all)
 {
-#pragma omp parallel num_threads(run->threads)
-    {
 #pragma omp for schedule(static)
-        for (size_t chunk = 0; chunk < node_chunk_count(run); chunk++)
-            update_chunk(run, chunk, factor, clears);
-#pragma omp for schedule(static)
-        for (size_t chunk = 0; chunk < wall_chunk_count(run); chunk++)
-            wall_nodes_update(run, chunk, factor);
+    for (size_t block = 0; block < run->grid.nodes.count; block++) {
+        if (all || run->block_walled[block])
+            clear_scattered(run, block);
     }
 }
 
-/* Blocks that the update has not cleared, because the walls or the ramp still needed them. */
-static void clear_block(struct run *run, size_t block, bool ramped)
+static void book_nodes(struct run *run, double factor)
 {
-    if (ramped || run->block_walled[block])
-        clear_scattered(run, block);
-}
-
-static void clear_alone(struct run *run, bool ramped)
-{
-    for (size_t block = 0; block < run->grid.nodes.count; block++)
-        clear_block(run, block, ramped);
-}
-
-static void clear_together(struct run *run, bool ramped)
-{
-#pragma omp parallel for schedule(static) num_threads(run->threads)
-    for (size_t block = 0; block < run->grid.nodes.count; block++)
-        clear_block(run, block, ramped);
+    book_body_forces(run, factor);
+    wall_nodes_sum(run);
+    if (factor < 1)
+        book_ramp(run, factor);
 }
 
 void run_update_nodes(struct run *run)
 {
     const double factor = run_force_factor(run);
     const bool ramped = factor < 1; /* then masses are still needed after the walls */
-    if (run->threads == 1)
-        update_alone(run, factor, !ramped);
-    else
-        update_together(run, factor, !ramped);
-    book_body_forces(run, factor);
-    wall_nodes_sum(run);
-    if (ramped)
-        book_ramp(run, factor);
-    if (run->threads == 1)
-        clear_alone(run, ramped);
-    else
-        clear_together(run, ramped);
+    if (run->threads == 1) {
+        update_nodes(run, factor, !ramped);
+        book_nodes(run, factor);
+        clear_nodes(run, ramped);
+        return;
+    }
+#pragma omp parallel num_threads(run->threads)
+    {
+        update_nodes(run, factor, !ramped);
+#pragma omp single
+        book_nodes(run, factor);
+        clear_nodes(run, ramped);
+    }
 }

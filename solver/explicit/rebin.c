@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Particles that left their cell move to their new block and scatter there, one by one and in a
  * fixed order: by tile, last slot first, so that the slots of the other records stay valid. */
+#include "base/inline.h"
 #include "explicit/run.h"
 #include "health/health.h"
 
@@ -53,12 +54,8 @@ static enum talus_status move_record(struct run *run, const struct outbox_record
     const enum talus_status status = health_check_crosser(run, block, entry->slot, error);
     if (status != TALUS_OK)
         return status;
-    double position[3] = {0, 0, 0};
-    assert(run->grid.domain.axis_count <= 3);
-    for (uint32_t axis = 0; axis < run->grid.domain.axis_count; axis++)
-        position[axis] = domain_position(
-            &run->grid.domain, axis, cell[axis],
-            particle_values(&run->grid.layout, block, PARTICLE_POSITION, axis)[entry->slot]);
+    double position[3];
+    sparse_grid_slot_position(&run->grid, block, entry->slot, position);
     particle_block_remove(&run->grid.layout, block, entry->slot, record);
     const bool outside = !rebase(run, record, cell);
     if (outside || entry->eliminated) {
@@ -79,10 +76,9 @@ static enum talus_status move_record(struct run *run, const struct outbox_record
     return TALUS_OK;
 }
 
-/* Asks for the cache lines of one slot of a block: one for each component. Inlined by force, as
- * fetch_portion is. */
-__attribute__((always_inline)) static inline void
-fetch_slot(const struct particle_layout *layout, const struct particle_block *block, size_t slot)
+/* Asks for the cache lines of one slot of a block: one for each component. */
+TALUS_INLINE void fetch_slot(const struct particle_layout *layout,
+                             const struct particle_block *block, size_t slot)
 {
     const size_t stride = (size_t)block->row_capacity * LANE_COUNT;
     for (size_t component = 0; component < layout->double_count; component++)
@@ -92,8 +88,7 @@ fetch_slot(const struct particle_layout *layout, const struct particle_block *bl
 
 /* A particle that moves touches lines all over memory. Those of its old place are asked for some
  * particles ahead. */
-__attribute__((always_inline)) static inline void fetch_source(const struct run *run,
-                                                               const struct outbox_record *entry)
+TALUS_INLINE void fetch_source(const struct run *run, const struct outbox_record *entry)
 {
     const struct particle_block *block = &run->grid.blocks[entry->block];
     const size_t lane = entry->slot % LANE_COUNT;
@@ -104,8 +99,7 @@ __attribute__((always_inline)) static inline void fetch_source(const struct run 
 }
 
 /* Then, with its position at hand, those of its new place and of the nodes there. */
-__attribute__((always_inline)) static inline void fetch_target(const struct run *run,
-                                                               const struct outbox_record *entry)
+TALUS_INLINE void fetch_target(const struct run *run, const struct outbox_record *entry)
 {
     const struct sparse_grid *grid = &run->grid;
     const struct particle_block *block = &grid->blocks[entry->block];

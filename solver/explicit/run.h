@@ -161,6 +161,13 @@ static inline struct shape_context run_shape_context(struct run *run, double tim
                               time_step);
 }
 
+/* Index of the material of a slot. */
+static inline size_t material_of_slot(const struct run *run, const struct particle_block *block,
+                                      size_t slot)
+{
+    return run->body_material[block->body == NULL ? 0 : block->body[slot]];
+}
+
 /* Share of gravity that acts now: 1, or less during the force ramp. */
 double run_force_factor(const struct run *run);
 

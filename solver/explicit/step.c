@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* One time step: the passes over tiles and nodes in their order. */
+#include "base/inline.h"
 #include "explicit/run.h"
 #include "explicit/stage_clock.h"
 #include "health/health.h"
@@ -54,8 +55,8 @@ static void partition_outbox(struct run *run)
     }
 }
 
-/* Asks for bytes of memory in the second-level cache; the rules are those of fetch_portion. */
-__attribute__((always_inline)) static inline void fetch(const void *memory, size_t bytes)
+/* Asks for bytes of memory in the second-level cache. */
+TALUS_INLINE void fetch(const void *memory, size_t bytes)
 {
     enum { LINE = 64 };
     for (size_t offset = 0; offset < bytes; offset += LINE)
@@ -64,8 +65,8 @@ __attribute__((always_inline)) static inline void fetch(const void *memory, size
 
 /* The block that comes `distance` after one, in this tile or the next of the colour; or NULL.
  * Fetches the nodes that no block before it touches. */
-__attribute__((always_inline)) static inline const struct particle_block *
-block_ahead(const struct run *run, size_t entry, size_t distance)
+TALUS_INLINE const struct particle_block *block_ahead(const struct run *run, size_t entry,
+                                                      size_t distance)
 {
     if (entry + distance >= run->grid.block_count)
         return NULL;

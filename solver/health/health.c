@@ -19,19 +19,6 @@ static void name_particle(const struct run *run, uint32_t id, size_t body, const
                    run->scene.bodies[body].name, position[0], position[1], position[2]);
 }
 
-static void place_of(const struct run *run, const struct particle_block *block, size_t slot,
-                     double position[3])
-{
-    for (uint32_t axis = 0; axis < 3; axis++)
-        position[axis] = 0;
-    for (uint32_t axis = 0; axis < run->grid.domain.axis_count; axis++) {
-        const int32_t cell = block->cell[axis] + (axis == 0 ? (int32_t)(slot % LANE_COUNT) : 0);
-        position[axis] = domain_position(
-            &run->grid.domain, axis, cell,
-            particle_values(&run->grid.layout, block, PARTICLE_POSITION, axis)[slot]);
-    }
-}
-
 static const char *advice(const struct run *run)
 {
     if (run->scene.solver.stress_update == TALUS_STRESS_LAST)
@@ -53,7 +40,7 @@ enum talus_status health_check_crosser(const struct run *run, const struct parti
     }
     if (finite && !far)
         return TALUS_OK;
-    place_of(run, block, slot, position);
+    sparse_grid_slot_position(&run->grid, block, slot, position);
     name_particle(run, block->id[slot], block->body == NULL ? 0 : block->body[slot], position, name,
                   sizeof name);
     if (!finite)
@@ -105,7 +92,7 @@ static void name_bad_particle(const struct run *run, uint32_t id, char *text, si
             if (!found || block->id[slot] == PARTICLE_NONE)
                 continue;
             double position[3];
-            place_of(run, block, slot, position);
+            sparse_grid_slot_position(&run->grid, block, slot, position);
             name_particle(run, block->id[slot], block->body == NULL ? 0 : block->body[slot],
                           position, text, size);
             return;

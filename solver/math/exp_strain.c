@@ -127,28 +127,18 @@ static real half_expm1(real value)
     return 2.0 * value < ELEMENTARY_EXP_LIMIT ? 0.5 * elementary_expm1(2.0 * value) : (real)NAN;
 }
 
-static size_t exp_large_chunk(struct tensor_chunk *chunk, size_t row_count, real *const strain[6],
-                              real *const e[6])
+static const struct tensor_function exp_function = {find_small, find_medium, find_large,
+                                                    half_expm1};
+
+static size_t exp_large(struct tensor_chunk *chunk, size_t row_count, real *const *strain,
+                        real *const *e)
 {
-    struct tensor_chunk_rest rest;
-    tensor_chunk_rest_copy(&rest, row_count, strain);
-    find_large(chunk, row_count, rest.marked);
-    tensor_chunk_combine(chunk, row_count, strain, e);
-    return tensor_chunk_rest_apply(&rest, row_count, half_expm1, e);
+    return tensor_chunk_apply_large(&exp_function, chunk, row_count, strain, e);
 }
 
 static size_t exp_chunk(size_t row_count, real *const strain[6], real *const e[6])
 {
-    struct tensor_chunk chunk;
-    const enum tensor_range range = tensor_chunk_split(&chunk, row_count, strain);
-    if (range == TENSOR_LARGE)
-        return exp_large_chunk(&chunk, row_count, strain, e);
-    if (range == TENSOR_SMALL)
-        find_small(&chunk, row_count);
-    else
-        find_medium(&chunk, row_count);
-    tensor_chunk_combine(&chunk, row_count, strain, e);
-    return 0;
+    return tensor_chunk_apply(&exp_function, exp_large, row_count, strain, e);
 }
 
 void exp_strain_batch(size_t count, size_t component_count, real *const strain[6], real *const e[6])

@@ -66,14 +66,6 @@ TALUS_INLINE real expm1_medium(real x)
     return x + x * (x * sum);
 }
 
-/* For callers that tell small arguments apart; expm1_array() takes all and is as fast. */
-#define SERIES_LIMIT 0.1
-
-static inline real expm1_series(real x)
-{
-    return expm1_medium(x);
-}
-
 /* out[i] = log(1 + x[i]); NAN where x <= -1. out may be x. */
 void log1p_array(size_t count, const real *x, real *out);
 

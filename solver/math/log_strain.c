@@ -67,7 +67,7 @@ TALUS_INLINE void set_coefficients(struct tensor_chunk *chunk, size_t slot, real
     chunk->diagonal[slot] = (1.0 / 6.0) * log_determinant + (1.0 / 3.0) * chunk->J2[slot] * square;
 }
 
-TALUS_INLINE void find_small(struct tensor_chunk *chunk, size_t row_count)
+static void find_small(struct tensor_chunk *chunk, size_t row_count)
 {
 #pragma omp simd
     for (size_t slot = 0; slot < TENSOR_ROW * row_count; slot++) {
@@ -77,7 +77,7 @@ TALUS_INLINE void find_small(struct tensor_chunk *chunk, size_t row_count)
     }
 }
 
-TALUS_INLINE void find_medium(struct tensor_chunk *chunk, size_t row_count)
+static void find_medium(struct tensor_chunk *chunk, size_t row_count)
 {
 #pragma omp simd
     for (size_t slot = 0; slot < TENSOR_ROW * row_count; slot++) {
@@ -143,28 +143,18 @@ static real half_log1p(real value)
     return 0.5 * elementary_log1p(2.0 * value);
 }
 
-static size_t log_large(struct tensor_chunk *chunk, size_t row_count, real *const e[6],
-                        real *const strain[6])
+static const struct tensor_function log_function = {find_small, find_medium, find_large,
+                                                    half_log1p};
+
+static size_t log_large(struct tensor_chunk *chunk, size_t row_count, real *const *e,
+                        real *const *strain)
 {
-    struct tensor_chunk_rest rest;
-    tensor_chunk_rest_copy(&rest, row_count, e);
-    find_large(chunk, row_count, rest.marked);
-    tensor_chunk_combine(chunk, row_count, e, strain);
-    return tensor_chunk_rest_apply(&rest, row_count, half_log1p, strain);
+    return tensor_chunk_apply_large(&log_function, chunk, row_count, e, strain);
 }
 
 static size_t log_chunk(size_t row_count, real *const e[6], real *const strain[6])
 {
-    struct tensor_chunk chunk;
-    const enum tensor_range range = tensor_chunk_split(&chunk, row_count, e);
-    if (range == TENSOR_LARGE)
-        return log_large(&chunk, row_count, e, strain);
-    if (range == TENSOR_SMALL)
-        find_small(&chunk, row_count);
-    else
-        find_medium(&chunk, row_count);
-    tensor_chunk_combine(&chunk, row_count, e, strain);
-    return 0;
+    return tensor_chunk_apply(&log_function, log_large, row_count, e, strain);
 }
 
 size_t log_strain_batch(size_t count, size_t component_count, real *const e[6],

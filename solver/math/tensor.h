@@ -4,9 +4,8 @@
 #ifndef TALUS_TENSOR_H
 #define TALUS_TENSOR_H
 
+#include "base/inline.h"
 #include "math/real.h"
-
-#define TALUS_INLINE static inline __attribute__((always_inline, unused))
 
 struct vec3 {
     real x, y, z;
@@ -19,6 +18,10 @@ struct sym3 {
 struct mat3 {
     real m[3][3]; /* m[row][column] */
 };
+
+/* Place of component (row, column) of a symmetric tensor in the order xx yy zz xy yz xz. */
+static const unsigned char sym3_component[3][3]
+    __attribute__((unused)) = {{0, 3, 5}, {3, 1, 4}, {5, 4, 2}};
 
 TALUS_INLINE real vec3_dot(struct vec3 a, struct vec3 b)
 {

@@ -136,4 +136,47 @@ void tensor_chunk_rest_copy(struct tensor_chunk_rest *rest, size_t row_count, re
 size_t tensor_chunk_rest_apply(const struct tensor_chunk_rest *rest, size_t row_count,
                                real (*function)(real), real *const result[6]);
 
+/* Second pass of a function for one range, which leaves the coefficients in the chunk; the one for
+ * large tensors also marks the slots that it does not reach. */
+typedef void tensor_find(struct tensor_chunk *chunk, size_t row_count);
+typedef void tensor_find_large(struct tensor_chunk *chunk, size_t row_count, real_bits *beyond);
+
+/* What a function consists of: constants, so that the compiler sees through the pointers. */
+struct tensor_function {
+    tensor_find *find_small, *find_medium;
+    tensor_find_large *find_large;
+    real (*of_eigenvalue)(real); /* for what find_large does not reach */
+};
+
+/* Both of the last passes for large tensors. */
+TALUS_INLINE size_t tensor_chunk_apply_large(const struct tensor_function *function,
+                                             struct tensor_chunk *chunk, size_t row_count,
+                                             real *const in[6], real *const out[6])
+{
+    struct tensor_chunk_rest rest;
+    tensor_chunk_rest_copy(&rest, row_count, in);
+    function->find_large(chunk, row_count, rest.marked);
+    tensor_chunk_combine(chunk, row_count, in, out);
+    return tensor_chunk_rest_apply(&rest, row_count, function->of_eigenvalue, out);
+}
+
+/* All three passes over a chunk; `large` is tensor_chunk_apply_large of the same function, in a
+ * function of its own because it is long and rare. */
+TALUS_INLINE size_t tensor_chunk_apply(const struct tensor_function *function,
+                                       size_t (*large)(struct tensor_chunk *, size_t, real *const *,
+                                                       real *const *),
+                                       size_t row_count, real *const in[6], real *const out[6])
+{
+    struct tensor_chunk chunk;
+    const enum tensor_range range = tensor_chunk_split(&chunk, row_count, in);
+    if (range == TENSOR_LARGE)
+        return large(&chunk, row_count, in, out);
+    if (range == TENSOR_SMALL)
+        function->find_small(&chunk, row_count);
+    else
+        function->find_medium(&chunk, row_count);
+    tensor_chunk_combine(&chunk, row_count, in, out);
+    return 0;
+}
+
 #endif

@@ -3,6 +3,7 @@
  * axis are 1/2 - x and 1/2 + x, so a nodal field is a polynomial in 1, x, y, xy, z, ... whose
  * coefficients follow from the corner values by (lo + hi) / 2 and hi - lo on each axis; the
  * transposed transform expands moments to nodes. */
+#include "math/tensor.h"
 #include "shapes/shape.h"
 
 #define DIMENSION 1

@@ -245,9 +245,6 @@ static inline void LOCAL(add_force)(lanes moment[BASIS], const lanes q[DIMENSION
     }
 }
 
-/* Index of component (row, column) in the order xx yy zz xy yz xz. */
-static const unsigned char LOCAL(symmetric_index)[3][3] = {{0, 3, 5}, {3, 1, 4}, {5, 4, 2}};
-
 /* force_row_i -= sum (V0 tau) . grad N; with `momentum` also momentum_row_i += sum N m v. */
 static void LOCAL(scatter_row)(const struct shape_context *context,
                                const struct particle_block *block,
@@ -260,7 +257,7 @@ static void LOCAL(scatter_row)(const struct shape_context *context,
     const real *stress[DIMENSION];
     UNROLL for (int axis = 0; axis < DIMENSION; axis++)
     {
-        stress[axis] = source->stress[LOCAL(symmetric_index)[row][axis]];
+        stress[axis] = source->stress[sym3_component[row][axis]];
     }
     lanes force[BASIS] = {0}, momenta[BASIS] = {0};
     for (size_t slot = 0; slot < slot_count; slot += LANE_COUNT) {
@@ -346,7 +343,7 @@ static void LOCAL(scatter_one)(const struct shape_context *context,
         for (uint32_t row = 0; row < DIMENSION; row++) {
             real force = 0;
             for (int axis = 0; axis < DIMENSION; axis++)
-                force -= force_stress[LOCAL(symmetric_index)[row][axis]] * slope[axis];
+                force -= force_stress[sym3_component[row][axis]] * slope[axis];
             node_values(context->nodes, node_block, layout->force + row)[node] += force;
             if (momentum)
                 node_values(context->nodes, node_block, layout->momentum + row)[node] +=

@@ -200,7 +200,8 @@ void talus_simulation_read_positions(const struct talus_simulation *simulation, 
         const struct particle_block *block = &run->grid.blocks[index];
         for (size_t slot = 0; slot < (size_t)block->row_count * LANE_COUNT; slot++) {
             if (block->id[slot] != PARTICLE_NONE)
-                run_slot_position(run, block, slot, out + 3 * (size_t)rank[block->id[slot]]);
+                sparse_grid_slot_position(&run->grid, block, slot,
+                                          out + 3 * (size_t)rank[block->id[slot]]);
         }
     }
     free(rank);

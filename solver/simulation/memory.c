@@ -3,16 +3,9 @@
 #include "simulation/simulation_private.h"
 
 #include <math.h>
-#include <stddef.h>
 
 /* Packed particles take whole pages of this size (state/sparse_grid.c). */
 #define SLAB_STEP 0x1p21
-
-/* Arrays of one thread for a block; everything behind `gradient` is a pointer to one. */
-enum {
-    SCRATCH_ARRAYS =
-        (sizeof(struct block_scratch) - offsetof(struct block_scratch, gradient)) / sizeof(real *)
-};
 
 double layout_particle_bytes(const struct particle_layout *layout, size_t number)
 {
@@ -28,9 +21,10 @@ size_t simulation_memory(const struct talus_simulation *simulation)
                    run->tile_sums_capacity * sizeof *run->tile_sums +
                    run->wall_node_capacity * sizeof *run->wall_nodes +
                    run->wall_partial_capacity * sizeof *run->wall_partials +
+                   run->node_sums_capacity * sizeof *run->node_sums +
                    run->block_walled_capacity * sizeof *run->block_walled;
     for (int thread = 0; thread < run->thread_capacity; thread++)
-        bytes += run->scratch[thread].capacity * SCRATCH_ARRAYS * sizeof(real);
+        bytes += block_scratch_bytes(run->scratch[thread].capacity, sizeof(real));
     for (size_t index = 0; index < run->walls.face_count + run->scene.boundary_count; index++)
         bytes += 4 * run->windows[index].capacity * sizeof(double);
     for (size_t index = 0; index < simulation->blob_count; index++)
@@ -64,7 +58,7 @@ double simulation_memory_estimate(const struct run *run, size_t number, double p
     const double slab = per_particle * blocks * lanes_of_block * (rows + 1);
     /* With the slack of block_scratch_reserve. */
     const double scratch =
-        SCRATCH_ARRAYS * (1.5 * (rows + 1) * lanes_of_block + 24) * (double)number;
+        (double)block_scratch_bytes(1, number) * (1.5 * (rows + 1) * lanes_of_block + 24);
     return ceil(slab / SLAB_STEP) * SLAB_STEP + particles * sizeof *run->outbox +
            doubled(64, blocks) * (sizeof *run->grid.blocks + sizeof *run->grid.tiles + 60) +
            doubled(256, nodes) * (per_node_block + 36) + scratch + sizeof(struct talus_simulation);

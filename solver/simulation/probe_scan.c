@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 #include "simulation/probe_scan.h"
 
+#include "base/inline.h"
 #include "simulation/simulation_private.h"
 #include "state/wide_lanes.h"
 
@@ -8,9 +9,6 @@
 
 /* Rounding of positions, in cells. */
 #define COVER_MARGIN 1e-9
-
-/* Small parts of a loop over rows, of which the compiler must see the whole. */
-#define FORCE_INLINE __attribute__((always_inline)) static inline
 
 /* What must still be asked of the particles of a block, as bits. */
 enum question { ASK_PLACE = 1, ASK_BOUNDARY = 2, ASK_BODY = 4 };
@@ -141,7 +139,7 @@ struct row {
     wide_lanes position[3];
 };
 
-FORCE_INLINE struct row row_at(const struct view *view, size_t axis_count, size_t slot)
+TALUS_INLINE struct row row_at(const struct view *view, size_t axis_count, size_t slot)
 {
     struct row row = {.slot = slot};
     for (size_t axis = 0; axis < axis_count; axis++)
@@ -152,7 +150,7 @@ FORCE_INLINE struct row row_at(const struct view *view, size_t axis_count, size_
 }
 
 /* direction . x of a row: along a probe, or along the normal of a plane. */
-FORCE_INLINE wide_lanes row_along(const struct row *row, size_t axis_count,
+TALUS_INLINE wide_lanes row_along(const struct row *row, size_t axis_count,
                                   const double direction[3])
 {
     wide_lanes sum = {0};
@@ -168,7 +166,7 @@ static wide_mask row_on_shape(const struct look *look, size_t slot)
     wide_mask mask;
     for (size_t lane = 0; lane < LANE_COUNT; lane++) {
         double position[3];
-        run_slot_position(view->run, view->block, slot + lane, position);
+        sparse_grid_slot_position(&view->run->grid, view->block, slot + lane, position);
         mask[lane] = -(wall_set_distance(&view->run->walls, (size_t)look->probe->on_boundary,
                                          position) <= view->boundary_reach);
     }
@@ -176,7 +174,7 @@ static wide_mask row_on_shape(const struct look *look, size_t slot)
 }
 
 /* Which slots of a row a probe selects; empty ones may be among them. */
-FORCE_INLINE wide_mask row_selected(const struct look *look, size_t axis_count,
+TALUS_INLINE wide_mask row_selected(const struct look *look, size_t axis_count,
                                     const struct row *row)
 {
     const struct talus_probe *probe = look->probe;
@@ -197,7 +195,7 @@ FORCE_INLINE wide_mask row_selected(const struct look *look, size_t axis_count,
 }
 
 /* Mass and first moments. Empty slots have no mass. */
-FORCE_INLINE void add_rows(const struct look *look, size_t axis_count)
+TALUS_INLINE void add_rows(const struct look *look, size_t axis_count)
 {
     const struct view *view = look->view;
     wide_lanes total = {0}, first[3] = {{0}, {0}, {0}};
@@ -284,7 +282,7 @@ static bool block_reaches(struct view *view, const struct talus_probe *probe,
 
 /* Only those few particles are looked at one by one that reach beyond what has been found if they
  * are as large as the largest of the block. */
-FORCE_INLINE void stretch_rows(const struct look *look, size_t axis_count)
+TALUS_INLINE void stretch_rows(const struct look *look, size_t axis_count)
 {
     const struct view *view = look->view;
     const struct probe_sums *sums = look->sums;

@@ -113,18 +113,6 @@ double run_energy_part(const struct run *run, enum talus_energy_part part)
     return 0;
 }
 
-void run_slot_position(const struct run *run, const struct particle_block *block, size_t slot,
-                       double position[3])
-{
-    memset(position, 0, 3 * sizeof *position);
-    for (uint32_t axis = 0; axis < run->grid.domain.axis_count; axis++) {
-        const int32_t cell = block->cell[axis] + (axis == 0 ? (int32_t)(slot % LANE_COUNT) : 0);
-        position[axis] = domain_position(
-            &run->grid.domain, axis, cell,
-            particle_values(&run->grid.layout, block, PARTICLE_POSITION, axis)[slot]);
-    }
-}
-
 /* Front, height and extent; 0 where nothing is selected. */
 static double geometry_value(const struct run *run, const struct talus_probe *probe,
                              const struct probe_sums *sums)
@@ -241,7 +229,7 @@ static void locate_in_block(const struct run *run, const struct talus_probe *pro
             probe->body_index >= 0 && block->body != NULL && block->body[slot] != probe->body_index;
         if (block->id[slot] == PARTICLE_NONE || other)
             continue;
-        run_slot_position(run, block, slot, position);
+        sparse_grid_slot_position(&run->grid, block, slot, position);
         for (size_t axis = 0; axis < 3; axis++)
             square += (position[axis] - probe->at[axis]) * (position[axis] - probe->at[axis]);
         if (square < *nearest || (square == *nearest && block->id[slot] < *id)) {

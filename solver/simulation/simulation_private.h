@@ -72,9 +72,6 @@ void probe_sample(struct talus_simulation *simulation, size_t probe_index, doubl
 /* Finds the particles of point probes; at t = 0. */
 void probes_locate(struct talus_simulation *simulation);
 double run_energy_part(const struct run *run, enum talus_energy_part part);
-/* World position of a slot of a block. */
-void run_slot_position(const struct run *run, const struct particle_block *block, size_t slot,
-                       double position[3]);
 
 /* ---- frames.c ---- */
 /* Values of a field at one slot, components of it; the field must be available. */

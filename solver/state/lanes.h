@@ -85,15 +85,6 @@ static inline real lanes_largest(lanes value)
     return largest;
 }
 
-/* Sum of the lanes, in their order. */
-static inline real lanes_sum(lanes value)
-{
-    real sum = value[0];
-    for (int lane = 1; lane < LANE_COUNT; lane++)
-        sum += value[lane];
-    return sum;
-}
-
 /* True if a lane is set. */
 static inline int lanes_any(lane_mask mask)
 {

@@ -4,6 +4,7 @@
 #ifndef TALUS_SCRATCH_H
 #define TALUS_SCRATCH_H
 
+#include "base/inline.h"
 #include "math/real.h"
 
 #include <stddef.h>
@@ -53,9 +54,8 @@ struct block_scratch {
 };
 
 /* Asks for the next portion of what `ahead` still holds, into the second-level cache: the first has
- * too few places for misses on their way. Inlined by force: gcc drops the call of a function that
- * only fetches, as one without effect. */
-__attribute__((always_inline)) static inline void fetch_portion(struct fetch_ahead *ahead)
+ * too few places for misses on their way. */
+TALUS_INLINE void fetch_portion(struct fetch_ahead *ahead)
 {
     enum { LINE = 64, PORTION = 12 };
     const char *next = ahead->next;
@@ -67,5 +67,7 @@ __attribute__((always_inline)) static inline void fetch_portion(struct fetch_ahe
 /* Makes room for that many slots; contents are lost. 0, or -1 when memory ran out. */
 int block_scratch_reserve(struct block_scratch *scratch, size_t slots);
 void block_scratch_release(struct block_scratch *scratch);
+/* Bytes of all arrays with that many slots of `number` bytes each. */
+size_t block_scratch_bytes(size_t slots, size_t number);
 
 #endif

@@ -279,6 +279,18 @@ uint32_t sparse_grid_insert(struct sparse_grid *grid, const int32_t cell[3],
     return index;
 }
 
+void sparse_grid_slot_position(const struct sparse_grid *grid, const struct particle_block *block,
+                               size_t slot, double position[3])
+{
+    memset(position, 0, 3 * sizeof *position);
+    for (uint32_t axis = 0; axis < grid->domain.axis_count; axis++) {
+        const int32_t cell = block->cell[axis] + (axis == 0 ? (int32_t)(slot % LANE_COUNT) : 0);
+        position[axis] =
+            domain_position(&grid->domain, axis, cell,
+                            particle_values(&grid->layout, block, PARTICLE_POSITION, axis)[slot]);
+    }
+}
+
 size_t sparse_grid_memory(const struct sparse_grid *grid)
 {
     size_t bytes =

@@ -62,6 +62,9 @@ int sparse_grid_pack(struct sparse_grid *grid);
  * Returns the block, with the slot in *slot; BLOCK_NONE without memory. */
 uint32_t sparse_grid_insert(struct sparse_grid *grid, const int32_t cell[3],
                             const struct particle_record *record, size_t *slot);
+/* World position of a slot of a block [m]; 0 on axes that the domain lacks. */
+void sparse_grid_slot_position(const struct sparse_grid *grid, const struct particle_block *block,
+                               size_t slot, double position[3]);
 /* Bytes held. */
 size_t sparse_grid_memory(const struct sparse_grid *grid);
 size_t sparse_grid_particle_count(const struct sparse_grid *grid);

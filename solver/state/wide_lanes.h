@@ -6,6 +6,8 @@
 
 #include "state/lanes.h"
 
+#include <stddef.h>
+
 typedef double wide_lanes __attribute__((vector_size(LANE_COUNT * sizeof(double))));
 typedef int64_t wide_mask __attribute__((vector_size(LANE_COUNT * sizeof(double))));
 
@@ -65,6 +67,16 @@ static inline double wide_lanes_sum(wide_lanes value)
     for (int lane = 1; lane < LANE_COUNT; lane++)
         sum += value[lane];
     return sum;
+}
+
+/* Sum over the slots of weight x value; by lanes, so that it does not depend on the width of the
+ * processor's vectors. */
+static inline double lanes_weighted_sum(const real *weight, const real *value, size_t count)
+{
+    wide_lanes sum = {0};
+    for (size_t slot = 0; slot < count; slot += LANE_COUNT)
+        sum += lanes_widen(lanes_load(weight + slot)) * lanes_widen(lanes_load(value + slot));
+    return wide_lanes_sum(sum);
 }
 
 #endif

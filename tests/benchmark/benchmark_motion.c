@@ -26,14 +26,10 @@ static void set_block(const struct run *run, const struct particle_block *block,
     const struct domain *domain = &run->grid.domain;
     const struct particle_layout *layout = &run->grid.layout;
     for (size_t slot = 0; slot < (size_t)block->row_count * LANE_COUNT; slot++) {
-        double position[3] = {0, 0, 0}, velocity[3] = {0, 0, 0};
+        double position[3], velocity[3] = {0, 0, 0};
         if (block->id[slot] == PARTICLE_NONE)
             continue;
-        for (uint32_t axis = 0; axis < domain->axis_count; axis++) {
-            const int32_t cell = block->cell[axis] + (axis == 0 ? (int32_t)(slot % LANE_COUNT) : 0);
-            position[axis] = domain_position(
-                domain, axis, cell, particle_values(layout, block, PARTICLE_POSITION, axis)[slot]);
-        }
+        sparse_grid_slot_position(&run->grid, block, slot, position);
         field_at(run, position, amplitude, velocity);
         for (uint32_t axis = 0; axis < domain->axis_count; axis++)
             particle_values(layout, block, PARTICLE_VELOCITY, axis)[slot] = (real)velocity[axis];

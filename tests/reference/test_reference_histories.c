@@ -13,10 +13,10 @@ enum { STEPS = 100 };
 enum { STEPS = 1000 };
 #endif
 #define AGREEMENT 1e-10
-/* Impulses of single steps. Where a wall releases and grips again they amplify rounding: builds of
- * the solver that differ in nothing but fused multiply-adds are apart by 0.7e-10 to 1.7e-10 there,
- * while energy and momentum, their sums, agree within 1e-12. */
-#define IMPULSE_AGREEMENT 1e-9
+/* Impulses of single steps at walls that release and grip again, which amplifies rounding: builds
+ * of the solver that differ in nothing but fused multiply-adds are apart by 0.7e-10 to 1.7e-10
+ * there, while energy and momentum, their sums, agree within 1e-12. */
+#define RELEASE_AGREEMENT 1e-9
 
 enum motion { COLUMN, SLIDE, BAR };
 
@@ -263,7 +263,8 @@ static void run_material(const struct material *material)
                       c.moved, c.crossings, c.plastic);
         assert_true(c.energy <= AGREEMENT * c.energy_scale);
         assert_true(c.momentum <= AGREEMENT * c.momentum_scale);
-        assert_true(c.impulse <= IMPULSE_AGREEMENT * c.impulse_scale);
+        assert_true(c.impulse <= (variants[index].tension_release ? RELEASE_AGREEMENT : AGREEMENT) *
+                                     c.impulse_scale);
         assert_true(c.position <= AGREEMENT);
         if (variants[index].motion == SLIDE && STEPS >= 1000)
             assert_true(c.crossings > 0);
@@ -312,7 +313,7 @@ static void test_mixture(void **state)
                       c.impulse / c.impulse_scale, c.position, c.plastic);
         assert_true(c.energy <= AGREEMENT * c.energy_scale);
         assert_true(c.momentum <= AGREEMENT * c.momentum_scale);
-        assert_true(c.impulse <= IMPULSE_AGREEMENT * c.impulse_scale);
+        assert_true(c.impulse <= AGREEMENT * c.impulse_scale);
         assert_true(c.position <= AGREEMENT);
         assert_true(c.plastic > 1e-6);
     }
