@@ -18,6 +18,13 @@ if(TALUS_SANITIZE OR TALUS_THREAD_SANITIZE OR TALUS_COVERAGE)
     set(TALUS_ISAS)
 endif()
 
+# For the loop of edit, build and test: one instruction set, one precision.
+option(TALUS_QUICK "Build the solver for x86-64-v4 and double precision only" OFF)
+if(TALUS_QUICK)
+    set(TALUS_ISA_BASE ${TALUS_ISA_x86-64-v4})
+    set(TALUS_ISAS)
+endif()
+
 # Compiles a solver library with further options.
 function(talus_solver_options library)
     target_link_libraries(${library} PUBLIC talus_base PRIVATE OpenMP::OpenMP_C m)
