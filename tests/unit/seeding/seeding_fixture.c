@@ -44,8 +44,11 @@ void fixture_init(struct seeding_fixture *fixture, size_t axis_count, const char
     fixture->material.values = fixture->values;
     while (strcmp(material_table[fixture->material.model_index]->name, model) != 0)
         fixture->material.model_index++;
-    for (size_t index = 0; index < MATERIAL_PARAMETER_MAX; index++)
-        fixture->values[index] = NAN;
+    const struct parameter *parameters[MATERIAL_PARAMETER_MAX];
+    const size_t count = material_parameters(material_table[fixture->material.model_index],
+                                             parameters, MATERIAL_PARAMETER_MAX);
+    for (size_t index = 0; index < count; index++)
+        fixture->values[index] = parameters[index]->default_value;
     fixture_set(fixture, "density", 2000.0);
     fixture_set(fixture, "young_modulus", 1e7);
     fixture_set(fixture, "poisson_ratio", 0.25);
