@@ -46,9 +46,13 @@ struct wall_set {
     size_t face_count;
     struct wall_shape *shapes; /* [boundary_count] owned */
     size_t boundary_count;
-    double area_scale; /* full tributary area of an interior node is cell volume / cell along the
-                          normal */
+    /* Grows whenever a boundary moved to other grid lines, began or ended to act; what was worked
+     * out from node_faces() or cell_folds() before is then void. */
+    uint64_t change_count;
 };
+
+/* Share of a cell within which something counts as lying on a grid line. */
+#define LINE_TOLERANCE 0.01
 
 /* Geometry of one boundary on the grid. */
 struct wall_shape {
@@ -82,6 +86,13 @@ void wall_set_release(struct wall_set *walls);
 /* Which faces act on node (i, j, k). */
 void wall_set_node_faces(const struct wall_set *walls, const struct domain *domain,
                          const int32_t node[3], struct node_faces *faces);
+
+/* The sides of a cell (not negative) that are walls: bit 2 axis for its lower side along an axis,
+ * with the normal up, bit 2 axis + 1 for its upper side, with the normal down. Planes, faces and
+ * boxes (seen from outside) along grid lines that hold nodes; a face counts where it covers the
+ * side. Shape functions fold there. Void when change_count has grown. */
+unsigned wall_set_cell_folds(const struct wall_set *walls, const struct domain *domain,
+                             const int32_t cell[3]);
 
 /* True if a particle of that body at `position` is behind an eliminating boundary. */
 bool wall_set_eliminates(const struct wall_set *walls, const double position[3], int body_index);

@@ -6,9 +6,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Share of a cell within which something counts as lying on a grid line. */
-#define LINE_TOLERANCE 0.01
-
 static int32_t nearest_line(const struct domain *domain, size_t axis, double coordinate)
 {
     const double line = (coordinate - domain->min[axis]) * domain->inverse_cell[axis];

@@ -234,6 +234,56 @@ static void test_box_at_the_edge_of_the_grid(void **state)
     wall_set_release(&bench.walls);
 }
 
+static unsigned folds(const struct bench *bench, int32_t x, int32_t y, int32_t z)
+{
+    return wall_set_cell_folds(&bench->walls, &bench->domain, (int32_t[3]){x, y, z});
+}
+
+static void test_cells_beside_flat_walls_fold(void **state)
+{
+    (void)state;
+    struct bench bench;
+    bench_init(&bench, 3);
+    simulation_fixture_add_plane(&bench.fixture, "floor", 1, 0.6, 1, "stick", 0); /* line 1 */
+    simulation_fixture_add_plane(&bench.fixture, "roof", 1, 2.5, -1, "slip", 0);
+    /* x = 2, y from 0.5 to 2.5, z from 0.5 to 1.5. */
+    make_rectangle(simulation_fixture_add_plane(&bench.fixture, "gate", 0, 2, 1, "slip", 0), 1, 2);
+    simulation_fixture_add_plane(&bench.fixture, "sink", 0, 0, 1, "eliminate", 0);
+    struct talus_boundary *slope =
+        simulation_fixture_add_plane(&bench.fixture, "slope", 2, 0, 1, "slip", 0);
+    slope->normal[0] = 0.6;
+    slope->normal[2] = 0.8;
+    bench_build(&bench);
+    for (int32_t x = 0; x < NX; x++) {
+        for (int32_t y = 0; y < NY; y++) {
+            for (int32_t z = 0; z < NZ; z++) {
+                const bool gate = x == 4 && y >= 1 && y < 5 && z >= 1 && z < 3;
+                assert_int_equal(folds(&bench, x, y, z),
+                                 (gate ? 1u : 0u) | (y == 1 ? 4u : 0u) | (y == 4 ? 8u : 0u));
+            }
+        }
+    }
+    wall_set_release(&bench.walls);
+}
+
+static void test_cells_beside_a_box_fold(void **state)
+{
+    (void)state;
+    struct bench bench;
+    bench_init(&bench, 2);
+    /* On the floor of the grid: its lower face does not exist. */
+    simulation_fixture_add_obstacle(&bench.fixture, "block", (double[3]){1, 0},
+                                    (double[3]){2.5, 1.0}, "slip", 0);
+    bench_build(&bench);
+    for (int32_t x = 0; x < NX; x++) {
+        for (int32_t y = 0; y < NY; y++)
+            assert_int_equal(folds(&bench, x, y, 0), (x == 5 && y < 2 ? 1u : 0u) |
+                                                         (x == 1 && y < 2 ? 2u : 0u) |
+                                                         (y == 2 && x >= 2 && x < 5 ? 4u : 0u));
+    }
+    wall_set_release(&bench.walls);
+}
+
 static void test_eliminating_boundaries(void **state)
 {
     (void)state;
@@ -286,6 +336,8 @@ int main(void)
         cmocka_unit_test(test_rectangle_in_space),
         cmocka_unit_test(test_box_faces_and_inside),
         cmocka_unit_test(test_box_at_the_edge_of_the_grid),
+        cmocka_unit_test(test_cells_beside_flat_walls_fold),
+        cmocka_unit_test(test_cells_beside_a_box_fold),
         cmocka_unit_test(test_eliminating_boundaries),
         cmocka_unit_test(test_distances),
     };
