@@ -24,6 +24,14 @@ enum talus_axis { TALUS_X, TALUS_Y, TALUS_Z, TALUS_NO_AXIS = -1 };
 
 enum talus_outside { TALUS_OUTSIDE_ERROR, TALUS_OUTSIDE_ELIMINATE };
 
+/* A quantity over time: linear between its points, constant outside. Beside a number that holds
+ * while the table has no points; with a table, that number is the value at t = 0. */
+struct talus_time_table {
+    size_t count;
+    double *time;  /* [count] s, growing */
+    double *value; /* [count] */
+};
+
 struct talus_grid {
     double cell[3];        /* [m] per axis; 1 for axes beyond the dimension */
     double min[3];         /* [m] */

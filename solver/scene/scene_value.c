@@ -103,9 +103,15 @@ static json_t *effective_part(const struct scene_field *field, double value)
     return field->whole ? json_integer((json_int_t)value) : json_real(value);
 }
 
-static bool check_length(struct scene_reader *reader, const struct scene_path *path,
-                         const json_t *given)
+bool scene_vector_length_check(struct scene_reader *reader, const struct scene_path *path,
+                               const struct scene_field *field, const json_t *given)
 {
+    if (!json_is_array(given)) {
+        scene_mistake(reader, path, "type", given,
+                      json_string(field->scalar ? "number or array" : "array"),
+                      "expected an array of numbers, not %s", scene_type_word(given));
+        return false;
+    }
     size_t length = json_array_size(given), axis_count = reader->axis_count;
     if (axis_count == 0 ? length >= 1 && length <= 3 : length == axis_count)
         return true;
@@ -122,13 +128,7 @@ bool scene_vector_read(struct scene_reader *reader, const struct scene_path *pat
 {
     size_t count = json_is_array(given) ? json_array_size(given) : reader->axis_count;
     bool scalar = field->scalar && json_is_number(given);
-    if (!json_is_array(given) && !scalar) {
-        scene_mistake(reader, path, "type", given,
-                      json_string(field->scalar ? "number or array" : "array"),
-                      "expected an array of numbers, not %s", scene_type_word(given));
-        return false;
-    }
-    if (!scalar && !check_length(reader, path, given))
+    if (!scalar && !scene_vector_length_check(reader, path, field, given))
         return false;
     *effective = json_array();
     bool valid = true;
