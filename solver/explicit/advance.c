@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The second pass: one block from gather to scatter, stage by stage through scratch. */
+#include "explicit/advance.h"
+
 #include "antilocking/anti_locking.h"
 #include "explicit/kinematics.h"
 #include "explicit/material_stage.h"
-#include "explicit/run.h"
 #include "explicit/stage_clock.h"
 #include "math/sticky.h"
 #include "state/wide_lanes.h"
@@ -181,16 +181,18 @@ static void collect_crossers(struct run *run, const struct particle_block *block
     }
 }
 
-/* Gathers, and returns the trial strains; `still` takes the state as it is. */
-static void strain_block(struct run *run, struct block_scratch *scratch,
-                         struct particle_block *block, struct tile_sums *sums, bool still)
+void advance_strain(struct run *run, struct block_scratch *scratch, struct particle_block *block,
+                    struct tile_sums *sums, bool still)
 {
     const double time_step = still ? 0.0 : run->time_step;
     const struct shape_context context = run_shape_context(run, time_step);
     const size_t count = (size_t)block->row_count * LANE_COUNT;
     const bool corrects = run->scene.solver.stress_update == TALUS_STRESS_LAST ||
                           block->constrained || run->scene.solver.local_damping > 0;
-    run->kernels->gather(&context, block, corrects && !still, scratch);
+    run->kernels->gather(&context, block,
+                         GATHER_DISPLACEMENT | GATHER_GRADIENT |
+                             (corrects && !still ? GATHER_CORRECTION : 0U),
+                         scratch);
     if (run->scene.solver.pic_rate > 0 && !still)
         blend_velocity(run, block, scratch, count);
     record_displacement(run, block, scratch, count);
@@ -204,9 +206,8 @@ static void strain_block(struct run *run, struct block_scratch *scratch,
     stage_clock_lap(scratch->clock, STAGE_KINEMATICS);
 }
 
-/* Stress out of the trial strains, and what it leaves behind. */
-static void stress_block(struct run *run, struct block_scratch *scratch,
-                         struct particle_block *block, struct tile_sums *sums, bool still)
+void advance_stress(struct run *run, struct block_scratch *scratch, struct particle_block *block,
+                    struct tile_sums *sums, bool still)
 {
     const size_t count = (size_t)block->row_count * LANE_COUNT;
     const struct material_outcome outcome =
@@ -222,15 +223,11 @@ static void stress_block(struct run *run, struct block_scratch *scratch,
     stage_clock_lap(scratch->clock, STAGE_STORE);
 }
 
-void run_advance_block(struct run *run, struct block_scratch *scratch, uint32_t block_index,
-                       struct tile *tile, struct tile_sums *sums, bool still)
+void advance_finish(struct run *run, struct block_scratch *scratch, uint32_t block_index,
+                    struct tile *tile, struct tile_sums *sums, bool still)
 {
     struct particle_block *block = &run->grid.blocks[block_index];
     const size_t count = (size_t)block->row_count * LANE_COUNT;
-    if (count == 0)
-        return;
-    strain_block(run, scratch, block, sums, still);
-    stress_block(run, scratch, block, sums, still);
     struct scatter_source source;
     source_init(run, block, scratch, &source);
     if (run->scene.solver.viscous_damping > 0)
@@ -248,7 +245,6 @@ void run_advance_block(struct run *run, struct block_scratch *scratch, uint32_t 
         fetch_portion(&scratch->ahead);
     stage_clock_lap(scratch->clock, STAGE_MOVE);
     const struct shape_context context = run_shape_context(run, run->time_step);
-    run->kernels->scatter(&context, block, &source,
-                          run->scene.solver.stress_update == TALUS_STRESS_LAST);
+    run->kernels->scatter(&context, block, &source, run->scatters);
     stage_clock_lap(scratch->clock, STAGE_SCATTER);
 }

@@ -72,7 +72,7 @@ static enum talus_status move_record(struct run *run, const struct outbox_record
                                (unsigned long long)run->step);
     const struct shape_context context = run_shape_context(run, run->time_step);
     run->kernels->scatter_one(&context, &run->grid.blocks[target], slot, entry->force_stress,
-                              run->scene.solver.stress_update == TALUS_STRESS_LAST);
+                              run->scatters);
     return TALUS_OK;
 }
 

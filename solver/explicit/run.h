@@ -115,6 +115,7 @@ struct run {
 
     const struct shape *shape;
     const struct shape_kernels *kernels;
+    unsigned scatters; /* what the last pass of a step leaves at the nodes for the next */
 
     struct wall_set walls;
     struct wall_node *wall_nodes; /* [wall_node_count] owned, in order of node blocks */
@@ -178,11 +179,6 @@ int run_find_walls(struct run *run);
 /* ---- node_update.c ---- */
 void run_kick_nodes(struct run *run);
 void run_update_nodes(struct run *run);
-
-/* ---- advance.c ---- */
-/* The second pass for one block, from gather to scatter; with `still` only stress and scatter. */
-void run_advance_block(struct run *run, struct block_scratch *scratch, uint32_t block_index,
-                       struct tile *tile, struct tile_sums *sums, bool still);
 
 /* ---- rebin.c ---- */
 /* Moves the particles of the outboxes to their new blocks. */

@@ -140,45 +140,99 @@ static inline void LOCAL(position_arrays)(const struct shape_context *context,
         values[axis] = particle_values(context->particles, block, PARTICLE_POSITION, axis);
 }
 
+/* moment_s += m sum over the axes b in s of A_b (1/4 - x_b^2) phi_(s without b): what the affine
+ * part of the velocity adds to the momentum p phi_s, A per cell width. */
+static inline void LOCAL(add_affine)(lanes moment[BASIS], lanes m, real *const affine[DIMENSION],
+                                     size_t slot, const lanes x[DIMENSION], const lanes phi[BASIS])
+{
+    UNROLL for (int axis = 0; axis < DIMENSION; axis++)
+    {
+        const lanes q = m * lanes_load(affine[axis] + slot) * ((real)0.25 - x[axis] * x[axis]);
+        UNROLL for (int s = 1; s < BASIS; s++)
+        {
+            if (s & 1 << axis)
+                moment[s] += q * phi[s ^ 1 << axis];
+        }
+    }
+}
+
+/* The row of PARTICLE_AFFINE of one velocity component. */
+static inline void LOCAL(affine_arrays)(const struct shape_context *context,
+                                        const struct particle_block *block, uint32_t row,
+                                        real *affine[DIMENSION])
+{
+    for (uint32_t axis = 0; axis < DIMENSION; axis++)
+        affine[axis] =
+            particle_values(context->particles, block, PARTICLE_AFFINE, DIMENSION * row + axis);
+}
+
+/* One velocity component of the kick; `affine`: the scene stores PARTICLE_AFFINE. */
+TALUS_INLINE void LOCAL(kick_axis)(const struct shape_context *context,
+                                   const struct particle_block *block, uint32_t axis,
+                                   real *const position[DIMENSION], bool affine)
+{
+    const real *mass = particle_values(context->particles, block, PARTICLE_MASS, 0);
+    const struct node_layout *layout = &context->nodes->layout;
+    const size_t slot_count = (size_t)block->row_count * LANE_COUNT;
+    real *velocity = particle_values(context->particles, block, PARTICLE_VELOCITY, axis);
+    real *row[DIMENSION];
+    if (affine)
+        LOCAL(affine_arrays)(context, block, axis, row);
+    lanes c[BASIS], moment[BASIS] = {0};
+    LOCAL(load_coefficients)(context->nodes, block, layout->kick + axis, c);
+    for (size_t slot = 0; slot < slot_count; slot += LANE_COUNT) {
+        lanes x[DIMENSION], phi[BASIS], kicked;
+        LOCAL(load_position)(position, slot, x);
+        LOCAL(basis)(x, phi);
+        const lanes m = lanes_load(mass + slot);
+        /* Empty slots must not gather velocity. */
+        if (affine) {
+            lanes slope[DIMENSION];
+            kicked = LOCAL(evaluate_with_slopes)(c, x, slope);
+            UNROLL for (int along = 0; along < DIMENSION; along++)
+            {
+                lanes_store(row[along] + slot,
+                            lanes_keep(m > 0, lanes_load(row[along] + slot) + slope[along]));
+            }
+            LOCAL(add_affine)(moment, m, row, slot, x, phi);
+        } else {
+            kicked = LOCAL(evaluate)(c, x);
+        }
+        const lanes v = lanes_keep(m > 0, lanes_load(velocity + slot) + kicked);
+        lanes_store(velocity + slot, v);
+        const lanes p = m * v;
+        UNROLL for (int s = 0; s < BASIS; s++)
+        {
+            moment[s] += p * phi[s];
+        }
+    }
+    LOCAL(add_moments)(context->nodes, block, layout->momentum + axis, moment);
+}
+
 static void LOCAL(kick)(const struct shape_context *context, struct particle_block *block)
 {
     real *position[DIMENSION];
     LOCAL(position_arrays)(context, block, position);
-    const real *mass = particle_values(context->particles, block, PARTICLE_MASS, 0);
-    const struct node_layout *layout = &context->nodes->layout;
-    const size_t slot_count = (size_t)block->row_count * LANE_COUNT;
+    const bool affine = context->particles->component_count[PARTICLE_AFFINE] > 0;
     for (uint32_t axis = 0; axis < DIMENSION; axis++) {
-        real *velocity = particle_values(context->particles, block, PARTICLE_VELOCITY, axis);
-        lanes c[BASIS], moment[BASIS] = {0};
-        LOCAL(load_coefficients)(context->nodes, block, layout->kick + axis, c);
-        for (size_t slot = 0; slot < slot_count; slot += LANE_COUNT) {
-            lanes x[DIMENSION], phi[BASIS];
-            LOCAL(load_position)(position, slot, x);
-            LOCAL(basis)(x, phi);
-            const lanes m = lanes_load(mass + slot);
-            /* Empty slots must not gather velocity. */
-            const lanes v = lanes_keep(m > 0, lanes_load(velocity + slot) + LOCAL(evaluate)(c, x));
-            lanes_store(velocity + slot, v);
-            const lanes p = m * v;
-            UNROLL for (int s = 0; s < BASIS; s++)
-            {
-                moment[s] += p * phi[s];
-            }
-        }
-        LOCAL(add_moments)(context->nodes, block, layout->momentum + axis, moment);
+        if (affine)
+            LOCAL(kick_axis)(context, block, axis, position, true);
+        else
+            LOCAL(kick_axis)(context, block, axis, position, false);
     }
 }
 
-/* Displacement in cell widths and gradient of the increment along one axis; moves the particles. */
-static void LOCAL(gather_axis)(const struct shape_context *context,
-                               const struct particle_block *block, uint32_t axis,
-                               real *const position[DIMENSION], struct block_scratch *scratch)
+/* Way of the step and gradient of the increment along one axis, out of one node component. */
+TALUS_INLINE void LOCAL(gather_axis)(const struct shape_context *context,
+                                     const struct particle_block *block, uint32_t component,
+                                     uint32_t axis, real *const position[DIMENSION], unsigned what,
+                                     struct block_scratch *scratch)
 {
     const real *mass = particle_values(context->particles, block, PARTICLE_MASS, 0);
     const size_t slot_count = (size_t)block->row_count * LANE_COUNT;
     real *gradient[DIMENSION];
     lanes c[BASIS], ratio[DIMENSION];
-    LOCAL(load_coefficients)(context->nodes, block, context->nodes->layout.velocity + axis, c);
+    LOCAL(load_coefficients)(context->nodes, block, component + axis, c);
     UNROLL for (int s = 0; s < BASIS; s++)
     {
         c[s] *= context->displacement[axis];
@@ -193,10 +247,35 @@ static void LOCAL(gather_axis)(const struct shape_context *context,
         LOCAL(load_position)(position, slot, x);
         const lane_mask filled = lanes_load(mass + slot) > 0;
         const lanes moved = LOCAL(evaluate_with_slopes)(c, x, slope);
-        lanes_store(scratch->displacement[axis] + slot, lanes_keep(filled, moved));
+        if (what & GATHER_DISPLACEMENT)
+            lanes_store(scratch->displacement[axis] + slot, lanes_keep(filled, moved));
         UNROLL for (int along = 0; along < DIMENSION; along++)
         {
-            lanes_store(gradient[along] + slot, lanes_keep(filled, slope[along] * ratio[along]));
+            if (what & GATHER_GRADIENT)
+                lanes_store(gradient[along] + slot,
+                            lanes_keep(filled, slope[along] * ratio[along]));
+        }
+    }
+}
+
+/* PARTICLE_AFFINE of one velocity component: for hat functions the slope of the velocity. */
+static void LOCAL(gather_affine)(const struct shape_context *context,
+                                 const struct particle_block *block, uint32_t axis,
+                                 real *const position[DIMENSION])
+{
+    const real *mass = particle_values(context->particles, block, PARTICLE_MASS, 0);
+    const size_t slot_count = (size_t)block->row_count * LANE_COUNT;
+    real *row[DIMENSION];
+    lanes c[BASIS];
+    LOCAL(affine_arrays)(context, block, axis, row);
+    LOCAL(load_coefficients)(context->nodes, block, context->nodes->layout.velocity + axis, c);
+    for (size_t slot = 0; slot < slot_count; slot += LANE_COUNT) {
+        lanes x[DIMENSION], slope[DIMENSION];
+        LOCAL(load_position)(position, slot, x);
+        (void)LOCAL(evaluate_with_slopes)(c, x, slope);
+        UNROLL for (int along = 0; along < DIMENSION; along++)
+        {
+            lanes_store(row[along] + slot, lanes_keep(lanes_load(mass + slot) > 0, slope[along]));
         }
     }
 }
@@ -220,14 +299,28 @@ static void LOCAL(correct_axis)(const struct shape_context *context,
 }
 
 static void LOCAL(gather)(const struct shape_context *context, const struct particle_block *block,
-                          bool correct, struct block_scratch *scratch)
+                          unsigned what, struct block_scratch *scratch)
 {
+    enum { BOTH = GATHER_DISPLACEMENT | GATHER_GRADIENT };
+    const struct node_layout *layout = &context->nodes->layout;
+    const bool together = (what & BOTH) == BOTH && layout->motion == layout->velocity;
     real *position[DIMENSION];
     LOCAL(position_arrays)(context, block, position);
     for (uint32_t axis = 0; axis < DIMENSION; axis++) {
-        if (correct)
+        if (what & GATHER_CORRECTION)
             LOCAL(correct_axis)(context, block, axis, position);
-        LOCAL(gather_axis)(context, block, axis, position, scratch);
+        if (together) {
+            LOCAL(gather_axis)(context, block, layout->velocity, axis, position, BOTH, scratch);
+        } else {
+            if (what & GATHER_DISPLACEMENT)
+                LOCAL(gather_axis)
+            (context, block, layout->motion, axis, position, GATHER_DISPLACEMENT, scratch);
+            if (what & GATHER_GRADIENT)
+                LOCAL(gather_axis)
+            (context, block, layout->velocity, axis, position, GATHER_GRADIENT, scratch);
+        }
+        if (what & GATHER_AFFINE)
+            LOCAL(gather_affine)(context, block, axis, position);
     }
 }
 
@@ -245,13 +338,16 @@ static inline void LOCAL(add_force)(lanes moment[BASIS], const lanes q[DIMENSION
     }
 }
 
-/* force_row_i -= sum (V0 tau) . grad N; with `momentum` also momentum_row_i += sum N m v. */
-static void LOCAL(scatter_row)(const struct shape_context *context,
-                               const struct particle_block *block,
-                               const struct scatter_source *source, uint32_t row, bool momentum)
+/* force_row_i -= sum (V0 tau) . grad N; momentum_row_i += sum N m v. */
+TALUS_INLINE void LOCAL(scatter_row)(const struct shape_context *context,
+                                     const struct particle_block *block,
+                                     const struct scatter_source *source, uint32_t row,
+                                     unsigned what, bool affine)
 {
-    real *position[DIMENSION];
+    real *position[DIMENSION], *affine_row[DIMENSION];
     LOCAL(position_arrays)(context, block, position);
+    if (affine)
+        LOCAL(affine_arrays)(context, block, row, affine_row);
     const size_t slot_count = (size_t)block->row_count * LANE_COUNT;
     const real *velocity = particle_values(context->particles, block, PARTICLE_VELOCITY, row);
     const real *stress[DIMENSION];
@@ -264,27 +360,35 @@ static void LOCAL(scatter_row)(const struct shape_context *context,
         lanes x[DIMENSION], phi[BASIS], q[DIMENSION];
         LOCAL(load_position)(position, slot, x);
         LOCAL(basis)(x, phi);
-        const lanes volume = lanes_load(source->volume + slot);
-        UNROLL for (int axis = 0; axis < DIMENSION; axis++)
-        {
-            q[axis] = volume * context->inverse_cell[axis] * lanes_load(stress[axis] + slot);
+        if (what & SCATTER_FORCE) {
+            const lanes volume = lanes_load(source->volume + slot);
+            UNROLL for (int axis = 0; axis < DIMENSION; axis++)
+            {
+                q[axis] = volume * context->inverse_cell[axis] * lanes_load(stress[axis] + slot);
+            }
+            LOCAL(add_force)(force, q, phi);
         }
-        LOCAL(add_force)(force, q, phi);
-        if (momentum) {
-            const lanes p = lanes_load(source->mass + slot) * lanes_load(velocity + slot);
+        if (what & SCATTER_MOMENTUM) {
+            const lanes m = lanes_load(source->mass + slot);
+            const lanes p = m * lanes_load(velocity + slot);
             UNROLL for (int s = 0; s < BASIS; s++)
             {
                 momenta[s] += p * phi[s];
             }
+            if (affine)
+                LOCAL(add_affine)(momenta, m, affine_row, slot, x, phi);
         }
     }
-    LOCAL(add_moments)(context->nodes, block, context->nodes->layout.force + row, force);
-    if (momentum)
+    if (what & SCATTER_FORCE)
+        LOCAL(add_moments)(context->nodes, block, context->nodes->layout.force + row, force);
+    if (what & SCATTER_MOMENTUM)
         LOCAL(add_moments)(context->nodes, block, context->nodes->layout.momentum + row, momenta);
 }
 
-static void LOCAL(scatter_mass)(const struct shape_context *context,
-                                const struct particle_block *block, const real *mass)
+/* node component += sum N weight value; without `value` sum N weight. */
+TALUS_INLINE void LOCAL(scatter_value)(const struct shape_context *context,
+                                       const struct particle_block *block, const real *weight,
+                                       const real *value, uint32_t component)
 {
     real *position[DIMENSION];
     LOCAL(position_arrays)(context, block, position);
@@ -294,30 +398,91 @@ static void LOCAL(scatter_mass)(const struct shape_context *context,
         lanes x[DIMENSION], phi[BASIS];
         LOCAL(load_position)(position, slot, x);
         LOCAL(basis)(x, phi);
-        const lanes m = lanes_load(mass + slot);
+        lanes w = lanes_load(weight + slot);
+        if (value != NULL)
+            w *= lanes_load(value + slot);
         UNROLL for (int s = 0; s < BASIS; s++)
         {
-            moment[s] += m * phi[s];
+            moment[s] += w * phi[s];
         }
     }
-    LOCAL(add_moments)(context->nodes, block, context->nodes->layout.mass, moment);
+    LOCAL(add_moments)(context->nodes, block, component, moment);
+}
+
+static void LOCAL(scatter_values)(const struct shape_context *context,
+                                  const struct particle_block *block, const real *weight,
+                                  size_t count, const real *const *values, uint32_t first)
+{
+    for (size_t index = 0; index < count; index++)
+        LOCAL(scatter_value)(context, block, weight, values[index], first + (uint32_t)index);
+}
+
+static void LOCAL(gather_values)(const struct shape_context *context,
+                                 const struct particle_block *block, size_t count,
+                                 real *const *values, uint32_t first)
+{
+    real *position[DIMENSION];
+    LOCAL(position_arrays)(context, block, position);
+    const real *mass = particle_values(context->particles, block, PARTICLE_MASS, 0);
+    const size_t slot_count = (size_t)block->row_count * LANE_COUNT;
+    for (size_t index = 0; index < count; index++) {
+        lanes c[BASIS];
+        LOCAL(load_coefficients)(context->nodes, block, first + (uint32_t)index, c);
+        for (size_t slot = 0; slot < slot_count; slot += LANE_COUNT) {
+            lanes x[DIMENSION];
+            LOCAL(load_position)(position, slot, x);
+            lanes_store(values[index] + slot,
+                        lanes_keep(lanes_load(mass + slot) > 0, LOCAL(evaluate)(c, x)));
+        }
+    }
 }
 
 static void LOCAL(scatter)(const struct shape_context *context, const struct particle_block *block,
-                           const struct scatter_source *source, bool momentum)
+                           const struct scatter_source *source, unsigned what)
 {
-    LOCAL(scatter_mass)(context, block, source->mass);
+    enum { BOTH = SCATTER_FORCE | SCATTER_MOMENTUM };
+    const bool affine = context->particles->component_count[PARTICLE_AFFINE] > 0;
+    if (what & SCATTER_MASS)
+        LOCAL(scatter_value)
+    (context, block, source->mass, NULL, context->nodes->layout.mass);
     for (uint32_t row = 0; row < DIMENSION; row++) {
-        if (momentum)
-            LOCAL(scatter_row)(context, block, source, row, true);
-        else
-            LOCAL(scatter_row)(context, block, source, row, false);
+        if (affine && what & SCATTER_MOMENTUM)
+            LOCAL(scatter_row)(context, block, source, row, what, true);
+        else if ((what & BOTH) == BOTH)
+            LOCAL(scatter_row)(context, block, source, row, BOTH, false);
+        else if (what & SCATTER_FORCE)
+            LOCAL(scatter_row)(context, block, source, row, SCATTER_FORCE, false);
+        else if (what & SCATTER_MOMENTUM)
+            LOCAL(scatter_row)(context, block, source, row, SCATTER_MOMENTUM, false);
+    }
+}
+
+/* What one particle has to give to its nodes; one velocity component of a node. */
+static void LOCAL(add_one)(const struct shape_context *context, const struct particle_block *block,
+                           size_t slot, const real force_stress[6], unsigned what, uint32_t row,
+                           const real offset[DIMENSION], real weighted_mass,
+                           const real slope[DIMENSION], real *force, real *momentum)
+{
+    const struct particle_layout *particles = context->particles;
+    if (what & SCATTER_FORCE) {
+        real sum = 0;
+        for (int axis = 0; axis < DIMENSION; axis++)
+            sum -= force_stress[sym3_component[row][axis]] * slope[axis];
+        *force += sum;
+    }
+    if (what & SCATTER_MOMENTUM) {
+        real velocity = particle_values(particles, block, PARTICLE_VELOCITY, row)[slot];
+        for (uint32_t axis = 0; axis < DIMENSION && particles->component_count[PARTICLE_AFFINE] > 0;
+             axis++)
+            velocity += offset[axis] * particle_values(particles, block, PARTICLE_AFFINE,
+                                                       DIMENSION * row + axis)[slot];
+        *momentum += weighted_mass * velocity;
     }
 }
 
 static void LOCAL(scatter_one)(const struct shape_context *context,
                                const struct particle_block *block, size_t slot,
-                               const real force_stress[6], bool momentum)
+                               const real force_stress[6], unsigned what)
 {
     real *position[DIMENSION];
     LOCAL(position_arrays)(context, block, position);
@@ -325,11 +490,12 @@ static void LOCAL(scatter_one)(const struct shape_context *context,
     const struct node_layout *layout = &context->nodes->layout;
     const size_t lane = slot % LANE_COUNT;
     for (int corner = 0; corner < BASIS; corner++) {
-        real weight = 1, slope[DIMENSION];
+        real weight = 1, slope[DIMENSION], offset[DIMENSION];
         for (int axis = 0; axis < DIMENSION; axis++) {
             const real sign = corner >> axis & 1 ? 1.0 : -1.0;
             weight *= 0.5 + sign * position[axis][slot];
             slope[axis] = sign * context->inverse_cell[axis];
+            offset[axis] = (real)0.5 * sign - position[axis][slot];
             for (int other = 0; other < DIMENSION; other++) {
                 if (other != axis)
                     slope[axis] *= 0.5 + (corner >> other & 1 ? 1.0 : -1.0) * position[other][slot];
@@ -339,17 +505,13 @@ static void LOCAL(scatter_one)(const struct shape_context *context,
         const size_t shifted = lane + (size_t)(corner & 1);
         const uint32_t node_block = block->nodes[shifted == LANE_COUNT ? corner : corner & ~1];
         const size_t node = shifted % LANE_COUNT;
-        node_values(context->nodes, node_block, layout->mass)[node] += weight * mass;
-        for (uint32_t row = 0; row < DIMENSION; row++) {
-            real force = 0;
-            for (int axis = 0; axis < DIMENSION; axis++)
-                force -= force_stress[sym3_component[row][axis]] * slope[axis];
-            node_values(context->nodes, node_block, layout->force + row)[node] += force;
-            if (momentum)
-                node_values(context->nodes, node_block, layout->momentum + row)[node] +=
-                    weight * mass *
-                    particle_values(context->particles, block, PARTICLE_VELOCITY, row)[slot];
-        }
+        if (what & SCATTER_MASS)
+            node_values(context->nodes, node_block, layout->mass)[node] += weight * mass;
+        for (uint32_t row = 0; row < DIMENSION; row++)
+            LOCAL(add_one)
+        (context, block, slot, force_stress, what, row, offset, weight * mass, slope,
+         node_values(context->nodes, node_block, layout->force + row) + node,
+         node_values(context->nodes, node_block, layout->momentum + row) + node);
     }
 }
 
@@ -358,6 +520,8 @@ static const struct shape_kernels LOCAL(linear_kernels) = {
     .gather = LOCAL(gather),
     .scatter = LOCAL(scatter),
     .scatter_one = LOCAL(scatter_one),
+    .scatter_values = LOCAL(scatter_values),
+    .gather_values = LOCAL(gather_values),
 };
 
 #undef UNROLL

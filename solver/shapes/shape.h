@@ -45,20 +45,39 @@ struct scatter_source {
     const real *stress[6]; /* Kirchhoff stress [Pa] */
 };
 
+/* What a pass asks of a kernel; flags may be combined. */
+enum {
+    GATHER_DISPLACEMENT = 1, /* way of the step in cell widths, from the nodes' motion */
+    GATHER_GRADIENT = 2,     /* displacement gradient dt L, from the nodes' velocity */
+    GATHER_CORRECTION = 4,   /* v_p += sum N correction_i */
+    GATHER_AFFINE = 8,       /* PARTICLE_AFFINE, from the nodes' velocity */
+};
+enum {
+    SCATTER_MASS = 1,     /* mass_i += sum N m */
+    SCATTER_MOMENTUM = 2, /* momentum_i += sum N m v, with the affine part if particles have one */
+    SCATTER_FORCE = 4,    /* force_i -= sum (V0 tau) . grad N */
+};
+
 struct shape_kernels {
-    /* First pass of `modified_last`: v_p += sum N kick_i, then momentum_i += sum N m v_p. */
+    /* First pass of `modified_last`: v_p += sum N kick_i, then SCATTER_MOMENTUM; where particles
+     * have an affine part it is kicked too. */
     void (*kick)(const struct shape_context *context, struct particle_block *block);
-    /* The way of a step in cell widths and the displacement gradient dt L into scratch, from the
-     * grid velocity; with `correct` v_p += sum N correction_i. */
+    /* Into scratch->displacement and scratch->gradient, or into the particles. */
     void (*gather)(const struct shape_context *context, const struct particle_block *block,
-                   bool correct, struct block_scratch *scratch);
-    /* mass_i += sum N m, force_i -= sum (V0 tau) . grad N; with `momentum` also
-     * momentum_i += sum N m v. */
+                   unsigned what, struct block_scratch *scratch);
     void (*scatter)(const struct shape_context *context, const struct particle_block *block,
-                    const struct scatter_source *source, bool momentum);
+                    const struct scatter_source *source, unsigned what);
     /* The same for one slot of a block, given its V0 tau. */
     void (*scatter_one)(const struct shape_context *context, const struct particle_block *block,
-                        size_t slot, const real force_stress[6], bool momentum);
+                        size_t slot, const real force_stress[6], unsigned what);
+    /* Node component first + k += sum N weight values_k for k < count; values_k NULL: 1. Arrays
+     * over the slots; weight 0 in slots that take no part. */
+    void (*scatter_values)(const struct shape_context *context, const struct particle_block *block,
+                           const real *weight, size_t count, const real *const *values,
+                           uint32_t first);
+    /* values_k = sum N node_(first + k); 0 in empty slots. */
+    void (*gather_values)(const struct shape_context *context, const struct particle_block *block,
+                          size_t count, real *const *values, uint32_t first);
 };
 
 struct shape {

@@ -219,6 +219,9 @@ enum talus_status run_build(struct run *run, const struct talus_scene *scene, in
                      scene->solver.stress_update == TALUS_STRESS_LAST);
     run->shape = shape_table[scene->solver.shape_index];
     run->kernels = run->shape->kernels[scene->axis_count - 1];
+    run->scatters = SCATTER_MASS | SCATTER_FORCE;
+    if (scene->solver.stress_update == TALUS_STRESS_LAST)
+        run->scatters |= SCATTER_MOMENTUM;
     enum talus_status status = build_materials(run, error);
     if (status == TALUS_OK)
         status = build_walls(run, error);

@@ -19,6 +19,7 @@ struct node_layout {
     uint32_t momentum;   /* [kg m/s] scattered */
     uint32_t velocity;   /* [m/s] that strains and moves the material; shares its place with what is
                             free by then, see node_layout_init */
+    uint32_t motion;     /* [m/s] velocity that moves it: the same place, unless a scene asks */
     uint32_t kick;       /* [m/s] velocity increment that the particles get in the first pass */
     uint32_t correction; /* [m/s] velocity increment that they get in the second pass */
     uint32_t component_count;

@@ -122,7 +122,8 @@ static void check_linear_reproduction(struct bench *bench)
             }
         }
     }
-    bench->kernels->gather(&bench->context, bench_block(bench), false, &bench->scratch);
+    bench->kernels->gather(&bench->context, bench_block(bench),
+                           GATHER_DISPLACEMENT | GATHER_GRADIENT, &bench->scratch);
     for (size_t slot = 0; slot < bench->count; slot++) {
         for (size_t row = 0; row < bench->axes; row++) {
             double value = a[row];
@@ -210,7 +211,8 @@ static void check_transposes(struct bench *bench)
             }
         }
     }
-    bench->kernels->gather(&bench->context, bench_block(bench), false, &bench->scratch);
+    bench->kernels->gather(&bench->context, bench_block(bench),
+                           GATHER_DISPLACEMENT | GATHER_GRADIENT, &bench->scratch);
     static const size_t index[3][3] = {{0, 3, 5}, {3, 1, 4}, {5, 4, 2}};
     for (size_t slot = 0; slot < bench->count; slot++) {
         for (size_t row = 0; row < bench->axes; row++) {
@@ -233,7 +235,8 @@ static void check_scatter_one(struct bench *bench)
     const size_t size = nodes->count * nodes->layout.component_count * LANE_COUNT;
     clear_nodes(bench);
     const struct scatter_source source = source_of(bench);
-    bench->kernels->scatter(&bench->context, bench_block(bench), &source, true);
+    bench->kernels->scatter(&bench->context, bench_block(bench), &source,
+                            SCATTER_MASS | SCATTER_FORCE | SCATTER_MOMENTUM);
     real *all = malloc(size * sizeof *all);
     assert_non_null(all);
     memcpy(all, nodes->values, size * sizeof *all);
@@ -243,7 +246,8 @@ static void check_scatter_one(struct bench *bench)
         for (size_t component = 0; component < 6; component++)
             stress[component] = bench->volume[slot] * bench->scratch.stress[component][slot];
         if (filled(bench, slot))
-            bench->kernels->scatter_one(&bench->context, bench_block(bench), slot, stress, true);
+            bench->kernels->scatter_one(&bench->context, bench_block(bench), slot, stress,
+                                        SCATTER_MASS | SCATTER_FORCE | SCATTER_MOMENTUM);
     }
     for (size_t k = 0; k < size; k++)
         assert_close(nodes->values[k], all[k], ROUNDING, 30);
@@ -297,7 +301,8 @@ static void test_shapes(void **state)
             fill_scratch(&bench);
             clear_nodes(&bench);
             const struct scatter_source source = source_of(&bench);
-            bench.kernels->scatter(&bench.context, bench_block(&bench), &source, true);
+            bench.kernels->scatter(&bench.context, bench_block(&bench), &source,
+                                   SCATTER_MASS | SCATTER_FORCE | SCATTER_MOMENTUM);
             check_sums(&bench);
             check_transposes(&bench);
             check_scatter_one(&bench);

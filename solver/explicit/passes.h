@@ -1,0 +1,22 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* Passes over all particle blocks: what one tile does (tiles.c), and how threads share the tiles
+ * (passes.c). Tiles of one colour run at the same time, colours one after the other. */
+#ifndef TALUS_PASSES_H
+#define TALUS_PASSES_H
+
+#include "explicit/run.h"
+
+/* What a pass does with one tile, with the scratch of the thread. */
+typedef void pass_tile(struct run *run, size_t tile_index, struct block_scratch *scratch);
+
+void run_pass(struct run *run, pass_tile *pass);
+
+/* v_p += sum N dv_i; P_i = sum N m_p v_p. */
+pass_tile kick_tile;
+/* Everything from the nodes' velocities to the forces at the new positions, block by block; the
+ * tile's sums start from zero. */
+pass_tile advance_tile;
+/* The same at rest: stress of the initial state, its masses and forces. */
+pass_tile start_tile;
+
+#endif
