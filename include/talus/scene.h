@@ -17,6 +17,8 @@
 enum talus_dimension {
     TALUS_LINE,
     TALUS_PLANE_STRAIN,
+    TALUS_PLANE_STRESS, /* sigma_zz = 0; linear elastic materials only */
+    TALUS_AXISYMMETRIC, /* x is the distance from the axis, y runs along it; zz is the hoop */
     TALUS_SOLID,
 };
 

@@ -181,9 +181,9 @@ static double cells_across(const struct talus_scene *scene)
 
 void scene_advise_fine_grid(struct scene_advice *advice)
 {
-    static const double enough[] = {1000.0, 150.0, 60.0}; /* by dimension */
+    static const double enough[] = {1000.0, 150.0, 60.0}; /* by number of axes */
     const struct talus_scene *scene = advice->scene;
-    double limit = enough[scene->dimension], cells = cells_across(scene);
+    double limit = enough[scene->axis_count - 1], cells = cells_across(scene);
     char detail[160], change[96], saves[96];
     if (cells <= limit)
         return;

@@ -10,15 +10,15 @@
 
 #include <math.h>
 
-/* Particle-steps per second on one core, by dimension: {fluids and elastic solids, plastic solids}.
- * Processor time measured on a Zen 4 core with the default stress update and cell-based
+/* Particle-steps per second on one core, by number of axes: {fluids and elastic solids, plastic
+ * solids}. Processor time measured on a Zen 4 core with the default stress update and cell-based
  * anti-locking: dam break in plane strain 15e6, sand column (Drucker-Prager, Matsuoka-Nakai) 6.9e6,
  * column impact in 3D (capped Drucker-Prager, 73,728 particles) 3.1e6. Other machines and scenes
  * lie within the factor of three of the interval. */
 static const double rates[3][2] = {
-    [TALUS_LINE] = {12e6, 8e6},
-    [TALUS_PLANE_STRAIN] = {12e6, 6.5e6},
-    [TALUS_SOLID] = {5e6, 3e6},
+    {12e6, 8e6},
+    {12e6, 6.5e6},
+    {5e6, 3e6},
 };
 /* Of single over double precision: 1.6 to 2.2 over eight cases of talus-benchmark, compact bodies
  * of 8,000 and 500,000 particles; less in flows, whose wider blocks are filled less. */
@@ -95,7 +95,8 @@ static double wall_seconds(const struct talus_scene *scene, const struct talus_e
                            int threads, double written)
 {
     double share = plastic_share(scene);
-    double rate = rates[scene->dimension][0] * (1.0 - share) + rates[scene->dimension][1] * share;
+    const double *rated = rates[scene->axis_count - 1];
+    double rate = rated[0] * (1.0 - share) + rated[1] * share;
     if (scene->solver.precision == TALUS_PRECISION_SINGLE)
         rate *= single_gain;
     double useful = fmax(1.0, fmin(threads, estimate->useful_threads));

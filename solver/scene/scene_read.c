@@ -7,6 +7,7 @@
 #include <string.h>
 
 static const char *const dimension_words[] = {"line", "plane_strain", "solid", NULL};
+static const enum talus_dimension dimensions[] = {TALUS_LINE, TALUS_PLANE_STRAIN, TALUS_SOLID};
 static const char *const dimension_lacking[] = {"plane_stress", "axisymmetric", NULL};
 
 static void read_dimension(struct scene_reader *reader, const struct scene_path *path,
@@ -20,7 +21,7 @@ static void read_dimension(struct scene_reader *reader, const struct scene_path 
     }
     if (index < 0)
         return;
-    scene->dimension = (enum talus_dimension)index;
+    scene->dimension = dimensions[index];
     scene->axis_count = reader->axis_count = (size_t)index + 1;
     scene_put(reader, effective, path->key, json_string(dimension_words[index]));
 }

@@ -28,7 +28,8 @@ void fixture_init(struct seeding_fixture *fixture, size_t axis_count, const char
     memset(fixture, 0, sizeof *fixture);
     struct talus_scene *scene = &fixture->scene;
     scene->axis_count = axis_count;
-    scene->dimension = (enum talus_dimension)(axis_count - 1);
+    static const enum talus_dimension dimensions[] = {TALUS_LINE, TALUS_PLANE_STRAIN, TALUS_SOLID};
+    scene->dimension = dimensions[axis_count - 1];
     scene->duration = 1.0;
     for (size_t k = 0; k < 3; k++) {
         scene->grid.cell[k] = k < axis_count ? 0.25 : 1.0;
