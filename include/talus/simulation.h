@@ -18,9 +18,18 @@
 
 struct talus_simulation;
 
+/* Fills out[3] for the particle with that id, which is at `position` [m] at `time` [s]. Several
+ * threads may call it at once. */
+typedef void talus_particle_function(void *context, uint32_t id, const double position[3],
+                                     double time, double out[3]);
+
 struct talus_simulation_options {
     int threads;      /* at least 1; at most so many are used, fewer where more do not pay ... */
     bool all_threads; /* ... unless this asks for all of them */
+    /* For manufactured solutions; NULL: none. A restored simulation must be given the same. */
+    talus_particle_function *body_force;       /* [m/s^2] beside gravity */
+    talus_particle_function *initial_velocity; /* [m/s] in the place of the bodies' */
+    void *context;                             /* the caller's, handed to both */
 };
 
 /* Builds the simulation at t = 0: particles seeded, initial stress set, forces ready.

@@ -246,5 +246,8 @@ void advance_finish(struct run *run, struct block_scratch *scratch, uint32_t blo
     stage_clock_lap(scratch->clock, STAGE_MOVE);
     const struct shape_context context = run_shape_context(run, run->time_step);
     run->kernels->scatter(&context, block, &source, run->scatters);
+    if (run->force_count > 0)
+        run_scatter_forces(run, block, source.mass, 0, count, scratch,
+                           still ? run->time : run->time + run->time_step);
     stage_clock_lap(scratch->clock, STAGE_SCATTER);
 }

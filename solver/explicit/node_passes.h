@@ -18,6 +18,17 @@ static inline size_t wall_partial_stride(const struct run *run)
     return run->walls.face_count * FACE_SUMS + CHUNK_SUMS;
 }
 
+/* dt (f / m + g) of one node along one axis, without walls. `factor`: share of external forces. */
+static inline double node_free_increment(const struct run *run, size_t block, size_t lane,
+                                         uint32_t axis, double mass, double factor)
+{
+    const struct node_blocks *nodes = &run->grid.nodes;
+    double force = (double)node_values(nodes, block, nodes->layout.force + axis)[lane];
+    if (nodes->layout.external != 0)
+        force += factor * (double)node_values(nodes, block, nodes->layout.external + axis)[lane];
+    return run->time_step * (force / mass + factor * run->scene.gravity[axis]);
+}
+
 static inline size_t wall_chunk_count(const struct run *run)
 {
     return (run->wall_node_count + WALL_CHUNK - 1) / WALL_CHUNK;

@@ -33,7 +33,10 @@ static lanes whole_increment(const struct run *run, size_t block, const struct i
                              uint32_t axis, double factor)
 {
     const struct node_blocks *nodes = &run->grid.nodes;
-    const lanes force = lanes_load(node_values(nodes, block, nodes->layout.force + axis));
+    lanes force = lanes_load(node_values(nodes, block, nodes->layout.force + axis));
+    if (nodes->layout.external != 0)
+        force +=
+            (real)factor * lanes_load(node_values(nodes, block, nodes->layout.external + axis));
     return (real)run->time_step *
            (force * inertia->inverse_mass + (real)(factor * run->scene.gravity[axis]));
 }
@@ -117,14 +120,13 @@ static void sum_damping(const struct run *run, size_t block, double factor, stru
     const bool last = run->scene.solver.stress_update == TALUS_STRESS_LAST;
     const real *mass = node_values(nodes, block, nodes->layout.mass);
     for (uint32_t axis = 0; axis < run->grid.domain.axis_count; axis++) {
-        const real *force = node_values(nodes, block, nodes->layout.force + axis);
         const real *correction = node_values(nodes, block, nodes->layout.correction + axis);
         const real *velocity = node_values(nodes, block, nodes->layout.velocity + axis);
         for (size_t lane = 0; lane < LANE_COUNT; lane++) {
             if (mass[lane] <= run->mass_cutoff)
                 continue;
-            const double whole = run->time_step * ((double)force[lane] / (double)mass[lane] +
-                                                   factor * run->scene.gravity[axis]);
+            const double whole =
+                node_free_increment(run, block, lane, axis, (double)mass[lane], factor);
             const double braked = (double)correction[lane] - (last ? whole : 0.0);
             const double impulse = (double)mass[lane] * braked;
             sums->damping_impulse[axis] += impulse;
@@ -137,8 +139,11 @@ static void clear_scattered(struct run *run, size_t block)
 {
     const struct node_blocks *nodes = &run->grid.nodes;
     lanes_store(node_values(nodes, block, nodes->layout.mass), lanes_splat(0.0));
-    for (uint32_t axis = 0; axis < run->grid.domain.axis_count; axis++)
+    for (uint32_t axis = 0; axis < run->grid.domain.axis_count; axis++) {
         lanes_store(node_values(nodes, block, nodes->layout.force + axis), lanes_splat(0.0));
+        if (nodes->layout.external != 0)
+            lanes_store(node_values(nodes, block, nodes->layout.external + axis), lanes_splat(0.0));
+    }
 }
 
 /* Free nodes of a chunk of blocks, and their sums. What the walls need of a block stays until they
@@ -229,23 +234,26 @@ static void book_nodes(struct run *run, double factor)
     wall_nodes_sum(run);
     if (factor < 1)
         book_ramp(run, factor);
+    if (run->force_count > 0)
+        run_book_forces(run, factor);
 }
 
 void run_update_nodes(struct run *run)
 {
     const double factor = run_force_factor(run);
-    const bool ramped = factor < 1; /* then masses are still needed after the walls */
+    /* Then masses or external forces are still needed after the walls. */
+    const bool kept = factor < 1 || run->force_count > 0;
     if (run->threads == 1) {
-        update_nodes(run, factor, !ramped);
+        update_nodes(run, factor, !kept);
         book_nodes(run, factor);
-        clear_nodes(run, ramped);
+        clear_nodes(run, kept);
         return;
     }
 #pragma omp parallel num_threads(run->threads)
     {
-        update_nodes(run, factor, !ramped);
+        update_nodes(run, factor, !kept);
 #pragma omp single
         book_nodes(run, factor);
-        clear_nodes(run, ramped);
+        clear_nodes(run, kept);
     }
 }

@@ -73,6 +73,11 @@ static enum talus_status move_record(struct run *run, const struct outbox_record
     const struct shape_context context = run_shape_context(run, run->time_step);
     run->kernels->scatter_one(&context, &run->grid.blocks[target], slot, entry->force_stress,
                               run->scatters);
+    if (run->force_count > 0 && run_reserve_scratch(run) != 0)
+        return talus_error_set(error, TALUS_MEMORY, "memory", "", "out of memory at step %llu",
+                               (unsigned long long)run->step);
+    if (run->force_count > 0)
+        run_scatter_forces_one(run, &run->grid.blocks[target], slot, run->time);
     return TALUS_OK;
 }
 

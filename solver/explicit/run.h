@@ -19,7 +19,7 @@
 #include "shapes/shape.h"
 #include "state/scratch.h"
 #include "state/sparse_grid.h"
-#include "talus/scene.h"
+#include "talus/simulation.h"
 #include "talus/status.h"
 
 #include <stdbool.h>
@@ -100,6 +100,24 @@ struct run_audit {
     double largest_growth; /* of energy beyond the books, relative to the turnover */
 };
 
+struct run;
+
+/* A force on particles other than stress and constant gravity, as an acceleration. */
+struct particle_force {
+    /* Adds the accelerations [m/s^2] at `time` of the slots begin ... end - 1 of a block; empty
+     * slots may be given anything finite. Several threads call it at once. */
+    void (*add)(const void *source, const struct run *run, const struct particle_block *block,
+                size_t begin, size_t end, double time, real *const acceleration[3]);
+    const void *source; /* the owner's; handed to add */
+};
+enum { PARTICLE_FORCE_MAX = 4 };
+
+/* What the embedding program adds to a scene. */
+struct run_callbacks {
+    talus_particle_function *body_force, *initial_velocity;
+    void *context;
+};
+
 struct run {
     struct talus_scene scene; /* own copy */
     int threads;              /* of the next step */
@@ -112,6 +130,10 @@ struct run {
     size_t strain_components; /* that the materials see: 3, 4 or 6 */
     size_t
         stored_components; /* of PARTICLE_STRAIN: the same, or 1 if all materials are volumetric */
+
+    struct run_callbacks callbacks;
+    struct particle_force forces[PARTICLE_FORCE_MAX];
+    size_t force_count;
 
     const struct shape *shape;
     const struct shape_kernels *kernels;
@@ -175,6 +197,21 @@ double run_force_factor(const struct run *run);
 /* ---- wall_nodes.c ---- */
 /* Finds the walls of node blocks that are new, and which blocks touch them. 0, or -1. */
 int run_find_walls(struct run *run);
+
+/* ---- particle_forces.c ---- */
+/* Takes over what the embedding program adds. Before there are nodes. */
+void run_set_callbacks(struct run *run, const struct talus_simulation_options *options);
+/* Adds a force; at most PARTICLE_FORCE_MAX. Before there are nodes. */
+void run_add_force(struct run *run, struct particle_force force);
+/* external_i += sum N m a of the slots begin ... end - 1, a multiple of LANE_COUNT slots, at the
+ * end of the step; slots of mass 0 take no part. */
+void run_scatter_forces(struct run *run, const struct particle_block *block, const real *mass,
+                        size_t begin, size_t end, struct block_scratch *scratch, double time);
+/* The same for one particle that has changed blocks. */
+void run_scatter_forces_one(struct run *run, const struct particle_block *block, size_t slot,
+                            double time);
+/* Impulse and work of the external forces of the step, after the walls, for the audit. */
+void run_book_forces(struct run *run, double factor);
 
 /* ---- node_update.c ---- */
 void run_kick_nodes(struct run *run);

@@ -9,13 +9,9 @@
 static void free_increment(const struct run *run, const struct wall_node *wall, double mass,
                            double factor, double increment[3])
 {
-    const struct node_blocks *nodes = &run->grid.nodes;
     memset(increment, 0, 3 * sizeof *increment);
-    for (uint32_t axis = 0; axis < run->grid.domain.axis_count; axis++) {
-        const double force =
-            node_values(nodes, wall->block, nodes->layout.force + axis)[wall->lane];
-        increment[axis] = run->time_step * (force / mass + factor * run->scene.gravity[axis]);
-    }
+    for (uint32_t axis = 0; axis < run->grid.domain.axis_count; axis++)
+        increment[axis] = node_free_increment(run, wall->block, wall->lane, axis, mass, factor);
 }
 
 void wall_nodes_hold_back(struct run *run, size_t begin, size_t end, double factor)

@@ -197,7 +197,8 @@ static enum talus_status build_windows(struct run *run, struct talus_error *erro
     return TALUS_OK;
 }
 
-enum talus_status run_build(struct run *run, const struct talus_scene *scene, int threads,
+enum talus_status run_build(struct run *run, const struct talus_scene *scene,
+                            const struct talus_simulation_options *options,
                             struct talus_error *error)
 {
     memset(run, 0, sizeof *run);
@@ -209,7 +210,7 @@ enum talus_status run_build(struct run *run, const struct talus_scene *scene, in
     if (refuse_body_filters(scene, error) != TALUS_OK ||
         refuse_mixed_elimination(scene, error) != TALUS_OK)
         return TALUS_UNSUPPORTED;
-    run->threads = run->thread_capacity = threads < 1 ? 1 : threads;
+    run->threads = run->thread_capacity = options->threads < 1 ? 1 : options->threads;
     run->finite_strain = scene->solver.strain == TALUS_STRAIN_FINITE;
     run->strain_components = strain_components(scene);
     build_domain(scene, &run->grid.domain);
@@ -217,6 +218,7 @@ enum talus_status run_build(struct run *run, const struct talus_scene *scene, in
     run->stored_components = run->grid.layout.component_count[PARTICLE_STRAIN];
     node_layout_init(&run->grid.nodes.layout, scene->axis_count,
                      scene->solver.stress_update == TALUS_STRESS_LAST);
+    run_set_callbacks(run, options);
     run->shape = shape_table[scene->solver.shape_index];
     run->kernels = run->shape->kernels[scene->axis_count - 1];
     run->scatters = SCATTER_MASS | SCATTER_FORCE;

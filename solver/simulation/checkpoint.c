@@ -354,7 +354,7 @@ enum talus_status talus_simulation_restore(const struct talus_scene *scene,
     created->all_threads = options->all_threads;
     enum talus_status status = simulation_check_precision(scene, error);
     if (status == TALUS_OK)
-        status = run_build(&created->run, scene, options->threads, error);
+        status = run_build(&created->run, scene, options, error);
     if (status == TALUS_OK && !restore_state(created, found))
         status = talus_error_set(error, TALUS_INVALID, "checkpoint", "",
                                  "the checkpoint does not belong to this scene and build");

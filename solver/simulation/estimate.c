@@ -13,10 +13,10 @@ static double critical_at_start(const struct run *run)
     double signal_speed = 0;
     uint64_t materials = 0;
     for (size_t index = 0; index < run->scene.body_count; index++) {
+        const double *v = run->scene.bodies[index].velocity;
         const size_t material = run->body_material[index];
-        signal_speed =
-            fmax(signal_speed, run->materials[material].wave_speed +
-                                   seeding_largest_speed(&run->scene, &run->scene.bodies[index]));
+        signal_speed = fmax(signal_speed, run->materials[material].wave_speed +
+                                              sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]));
         materials |= (uint64_t)1 << material;
     }
     return run_critical_time_step(run, signal_speed, materials);
@@ -37,9 +37,10 @@ enum talus_status talus_simulation_estimate(const struct talus_scene *scene,
                                             struct talus_estimate *estimate,
                                             struct talus_error *error)
 {
+    const struct talus_simulation_options options = {.threads = 1};
     struct run run;
     memset(estimate, 0, sizeof *estimate);
-    enum talus_status status = run_build(&run, scene, 1, error);
+    enum talus_status status = run_build(&run, scene, &options, error);
     if (status != TALUS_OK) {
         run_release(&run);
         return status;

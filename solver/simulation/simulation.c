@@ -69,6 +69,22 @@ static void set_initial_strain(const struct run *run, const struct particle_seed
         record->values[layout->first_component[PARTICLE_HISTORY] + state] = (real)history[state];
 }
 
+static void set_velocity(const struct run *run, const struct particle_seed *seed, size_t particle,
+                         struct particle_record *record)
+{
+    double velocity[3] = {0, 0, 0}, position[3] = {0, 0, 0};
+    for (size_t axis = 0; axis < run->grid.domain.axis_count; axis++) {
+        velocity[axis] = seed->velocity[axis][particle];
+        position[axis] = seed->position[axis][particle];
+    }
+    if (run->callbacks.initial_velocity != NULL)
+        run->callbacks.initial_velocity(run->callbacks.context, (uint32_t)particle, position, 0,
+                                        velocity);
+    for (size_t axis = 0; axis < run->grid.domain.axis_count; axis++)
+        record->values[run->grid.layout.first_component[PARTICLE_VELOCITY] + axis] =
+            (real)velocity[axis];
+}
+
 static enum talus_status place_particle(struct run *run, const struct particle_seed *seed,
                                         size_t particle, struct talus_error *error)
 {
@@ -86,9 +102,8 @@ static enum talus_status place_particle(struct run *run, const struct particle_s
         cell[axis] = (int32_t)limited;
         record->values[layout->first_component[PARTICLE_POSITION] + axis] =
             (real)fmin(fmax(lines - limited - 0.5, -0.5), 0.5);
-        record->values[layout->first_component[PARTICLE_VELOCITY] + axis] =
-            (real)seed->velocity[axis][particle];
     }
+    set_velocity(run, seed, particle, record);
     record->values[layout->first_component[PARTICLE_MASS]] = (real)seed->mass[particle];
     record->values[layout->first_component[PARTICLE_VOLUME]] = (real)seed->volume[particle];
     set_initial_strain(run, seed, particle, record);
@@ -161,7 +176,7 @@ enum talus_status talus_simulation_create(const struct talus_scene *scene,
     created->all_threads = options->all_threads;
     enum talus_status status = simulation_check_precision(scene, error);
     if (status == TALUS_OK)
-        status = run_build(&created->run, scene, options->threads, error);
+        status = run_build(&created->run, scene, options, error);
     if (status == TALUS_OK)
         status = place_particles(&created->run, error);
     if (status == TALUS_OK)

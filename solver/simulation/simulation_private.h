@@ -45,7 +45,8 @@ TALUS_MUST_CHECK enum talus_status simulation_check_precision(const struct talus
 
 /* ---- build.c: from the scene, without particles ---- */
 TALUS_MUST_CHECK enum talus_status run_build(struct run *run, const struct talus_scene *scene,
-                                             int threads, struct talus_error *error);
+                                             const struct talus_simulation_options *options,
+                                             struct talus_error *error);
 void run_release(struct run *run);
 /* Which fields the scene stores. */
 void run_layout(const struct talus_scene *scene, struct particle_layout *layout);

@@ -21,6 +21,8 @@ struct node_layout {
                             free by then, see node_layout_init */
     uint32_t motion;     /* [m/s] velocity that moves it: the same place, unless a scene asks */
     uint32_t kick;       /* [m/s] velocity increment that the particles get in the first pass */
+    uint32_t external;   /* [N] of the present particle positions, other than stress and constant
+                            gravity; 0: the scene has none */
     uint32_t correction; /* [m/s] velocity increment that they get in the second pass */
     uint32_t component_count;
 };
@@ -38,6 +40,13 @@ struct node_blocks {
  * into velocity in place. */
 void node_layout_init(struct node_layout *layout, size_t axis_count,
                       bool momentum_outlives_velocity);
+/* Adds components to the layout, before there are nodes; returns the first of them. */
+static inline uint32_t node_layout_extend(struct node_layout *layout, size_t count)
+{
+    const uint32_t first = layout->component_count;
+    layout->component_count += (uint32_t)count;
+    return first;
+}
 void node_blocks_release(struct node_blocks *nodes);
 /* Index of the node block at a place, made (zeroed) if missing; BLOCK_NONE when memory ran out. */
 uint32_t node_blocks_require(struct node_blocks *nodes, int32_t x, int32_t y, int32_t z);
