@@ -79,6 +79,11 @@ enum talus_initial_stress {
     TALUS_INITIAL_GEOSTATIC,
     TALUS_INITIAL_GIVEN,
 };
+enum talus_velocity_field {
+    TALUS_VELOCITY_UNIFORM,
+    TALUS_VELOCITY_ROTATION,
+    TALUS_VELOCITY_BEAM_MODE
+};
 enum talus_k0 { TALUS_K0_GIVEN, TALUS_K0_ELASTIC, TALUS_K0_JAKY, TALUS_K0_AUTO };
 
 struct talus_body {
@@ -91,7 +96,13 @@ struct talus_body {
     double clip_min[3], clip_max[3]; /* -INFINITY/INFINITY: open */
     enum talus_lattice lattice;
     double lattice_value[3]; /* particles per cell, spacing [m] or count, per axis */
-    double velocity[3];      /* [m/s] */
+    enum talus_velocity_field velocity_field; /* at the start */
+    double velocity[3];                       /* uniform [m/s]; else 0 */
+    double rotation_about[3];                 /* rotation: v = rate x (x - about) [m] */
+    double rotation_rate[3];                  /* [rad/s]; in 2D only the last component */
+    double beam_mode;                         /* bending mode of the clamped-free beam: 1, 2, ... */
+    double beam_from[3], beam_to[3]; /* its neutral axis from the clamp to the free end [m] */
+    double beam_tip[3];              /* velocity of the free end, perpendicular to the axis [m/s] */
     enum talus_initial_stress initial_stress;
     double surface; /* hydrostatic: coordinate of the surface on the vertical axis; NAN: top of the
                        body */

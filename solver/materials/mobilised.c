@@ -253,18 +253,24 @@ static void return_stress(const struct mobilised *mobilised, size_t count, const
         real excess = maximum(norm + slope * (first - apex), 0);
         real resistance = (shear + bulk * slope * flow_slope) * norm;
         real share = excess / (resistance > 0 ? resistance : 1); /* multiplier over |s| */
-        real multiplier = share * norm;
-        real scale = 1 - shear * share;
-        real returned = first - bulk * flow_slope * multiplier;
+        real returned = first - bulk * flow_slope * share * norm;
+        /* contraction ends where the mean stress turns tensile */
+        real stop = maximum(first, 0);
+        bool stops = (flow_slope < 0) & (excess > 0) & ((returned > stop) | (resistance <= 0));
+        real divisor = norm > 0 ? norm : 1;
+        real scale = stops ? slope * (apex - stop) / divisor : 1 - shear * share;
+        returned = stops ? stop : returned;
         /* where the line ends: no deviator left, beyond the apex, or nothing that resists */
-        real beyond = maximum(maximum(-scale, returned - apex), resistance > 0 ? 0 : excess);
-        bool to_apex = beyond > 0;
+        real beyond = maximum(-scale, returned - apex);
+        bool to_apex = (beyond > 0) | ((resistance <= 0) & (excess > 0) & !stops);
         scale = to_apex ? 0 : scale;
+        returned = to_apex ? apex : returned;
+        bool along_line = !(to_apex | stops);
         invariants->scale[index] = scale;
-        invariants->returned[index] = to_apex ? apex : returned;
+        invariants->returned[index] = returned;
         invariants->spherical[index] =
-            to_apex ? (first - apex) * bulk_inverse : flow_slope * multiplier;
-        flow->deviatoric[index] = to_apex ? norm * shear_inverse : multiplier;
+            along_line ? flow_slope * share * norm : (first - returned) * bulk_inverse;
+        flow->deviatoric[index] = along_line ? share * norm : (1 - scale) * norm * shear_inverse;
         flow->left[index] = scale * norm;
     }
 }

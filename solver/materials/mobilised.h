@@ -93,7 +93,9 @@ void mobilised_mark_yielding(const struct mobilised *mobilised, const struct mat
 
 /* Returns trials to the surface along the flow |s| + flow_slope I1 of the angles' dilation, or to
  * the apex where the line ends there (Mast 2013, sec. 3.6.1, without hardening inside the step). A
- * flow slope above the slope would make plastic work negative and is cut. Writes the `out` of the
+ * flow slope above the slope would make plastic work negative and is cut; so would contraction
+ * under tensile mean stress (Mast leaves it open), which ends at I1 = 0: the potential is |s|
+ * beyond, the wedge between the two directions returns to I1 = 0. Writes the `out` of the
  * invariants, plastic strain, dissipation and the history: lambda and I1 at the end of the step. */
 void mobilised_return(const struct mobilised *mobilised, const struct material_batch *batch,
                       size_t begin, size_t count, const real *slopes,

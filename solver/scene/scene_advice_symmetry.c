@@ -30,6 +30,7 @@ static bool bodies_fill(const struct talus_scene *scene, size_t axis, double ran
             range[1] = shape.max[axis];
         }
         if (scene->bodies[index].shape != TALUS_BODY_BOX ||
+            scene->bodies[index].velocity_field != TALUS_VELOCITY_UNIFORM ||
             scene->bodies[index].velocity[axis] != 0.0 ||
             !near_scaled(scene, axis, shape.min[axis], range[0]) ||
             !near_scaled(scene, axis, shape.max[axis], range[1]))
@@ -99,7 +100,8 @@ static bool bodies_mirror(const struct talus_scene *scene, size_t axis, double c
     seeding_shape_init(&second, scene, b);
     bool same = a->shape == b->shape && a->material_index == b->material_index &&
                 a->radius == b->radius && a->initial_stress == b->initial_stress &&
-                a->shape != TALUS_BODY_CYLINDER;
+                a->shape != TALUS_BODY_CYLINDER && a->velocity_field == TALUS_VELOCITY_UNIFORM &&
+                b->velocity_field == TALUS_VELOCITY_UNIFORM;
     for (size_t k = 0; k < scene->axis_count; k++) {
         double low = k == axis ? mirrored(second.max[k], centre) : second.min[k];
         double high = k == axis ? mirrored(second.min[k], centre) : second.max[k];

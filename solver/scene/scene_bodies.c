@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Bodies: shape, lattice, material, initial velocity. */
+#include "scene/scene_body.h"
 #include "scene/scene_sections.h"
 
 #include <string.h>
@@ -77,47 +78,6 @@ static json_t *name_schema(void)
     return json_pack("{s:s}", "type", "string");
 }
 
-static const struct scene_field velocity_field = {
-    .key = "velocity",
-    .kind = SCENE_VECTOR,
-    .unit = "m/s",
-    .minimum = -1e6,
-    .maximum = 1e6,
-    .offset = AT(velocity),
-    .meaning = "velocity at the start",
-};
-
-static void read_velocity(struct scene_reader *reader, const struct scene_path *path,
-                          const json_t *given, void *target, json_t *effective)
-{
-    struct body_keys *keys = target;
-    static const char *const fields[] = {"rotation", "beam_mode", NULL};
-    json_t *value = NULL;
-    for (const char *const *field = fields; *field != NULL; field++) {
-        struct scene_path here = {.parent = path, .key = *field};
-        if (json_object_get(given, *field) == NULL)
-            continue;
-        scene_mistake(reader, &here, "unsupported", NULL, NULL,
-                      "velocity fields are not supported by this build");
-        return;
-    }
-    if (given != NULL) {
-        if (!scene_vector_read(reader, path, &velocity_field, given, keys->body.velocity, &value))
-            return;
-    } else {
-        value = json_array();
-        for (size_t k = 0; k < reader->axis_count; k++)
-            if (json_array_append_new(value, json_real(0.0)) != 0)
-                reader->out_of_memory = true;
-    }
-    scene_put(reader, effective, path->key, value);
-}
-
-static json_t *velocity_schema(void)
-{
-    return scene_field_schema(&velocity_field);
-}
-
 const struct scene_field scene_body_fields[] = {
     {.key = "name",
      .kind = SCENE_NAME,
@@ -148,9 +108,9 @@ const struct scene_field scene_body_fields[] = {
     {.key = "velocity",
      .kind = SCENE_CUSTOM,
      .unit = "m/s",
-     .read = read_velocity,
-     .schema = velocity_schema,
-     .meaning = "velocity at the start"},
+     .read = scene_body_velocity_read,
+     .schema = scene_body_velocity_schema,
+     .meaning = "velocity at the start: a vector, {\"rotation\": {...}} or {\"beam_mode\": {...}}"},
     {.key = "initial_stress",
      .kind = SCENE_CUSTOM,
      .unit = "Pa",

@@ -75,6 +75,8 @@ bool scene_vector_read(struct scene_reader *reader, const struct scene_path *pat
 /* True if it is an array with as many entries as the scene has axes; a mistake otherwise. */
 bool scene_vector_length_check(struct scene_reader *reader, const struct scene_path *path,
                                const struct scene_field *field, const json_t *given);
+/* A vector of zeros with one number per axis, as an effective value. */
+json_t *scene_zero_vector(struct scene_reader *reader);
 /* Index of a word, with mistakes for words that are unknown or lacking; -1 then. */
 int scene_choice_read(struct scene_reader *reader, const struct scene_path *path,
                       const json_t *given, const char *const *choices, const char *const *lacking);

@@ -143,10 +143,7 @@ void scene_gravity_read(struct scene_reader *reader, const struct scene_path *pa
         return;
     }
     if (given == NULL) {
-        value = json_array();
-        for (size_t k = 0; k < reader->axis_count; k++)
-            if (json_array_append_new(value, json_real(0.0)) != 0)
-                reader->out_of_memory = true;
+        value = scene_zero_vector(reader);
     } else if (!scene_vector_read(reader, path, &gravity_field, given, scene->gravity, &value)) {
         return;
     }

@@ -151,6 +151,16 @@ bool scene_vector_read(struct scene_reader *reader, const struct scene_path *pat
     return valid;
 }
 
+json_t *scene_zero_vector(struct scene_reader *reader)
+{
+    json_t *vector = json_array();
+    for (size_t k = 0; k < reader->axis_count; k++) {
+        if (json_array_append_new(vector, json_real(0.0)) != 0)
+            reader->out_of_memory = true;
+    }
+    return vector;
+}
+
 static int find_word(const char *word, const char *const *words)
 {
     for (int index = 0; words != NULL && words[index] != NULL; index++) {

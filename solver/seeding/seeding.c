@@ -3,6 +3,7 @@
 #include "materials/material.h"
 #include "seeding/seeding_lattice.h"
 #include "seeding/seeding_stress.h"
+#include "seeding/seeding_velocity.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -85,11 +86,12 @@ struct body_values {
 static void write_particle(struct particle_seed *seed, size_t particle, size_t body_index,
                            const struct body_values *values, const uint64_t index[3])
 {
-    double position[3], stress[6];
+    double position[3], velocity[3], stress[6];
     seeding_lattice_position(&values->lattice, index, position);
+    seeding_velocity_at(values->lattice.shape.body, position, velocity);
     for (size_t k = 0; k < 3; k++) {
         seed->position[k][particle] = position[k];
-        seed->velocity[k][particle] = values->lattice.shape.body->velocity[k];
+        seed->velocity[k][particle] = velocity[k];
     }
     seed->volume[particle] = values->volume;
     seed->mass[particle] = values->mass;

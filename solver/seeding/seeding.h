@@ -60,6 +60,10 @@ double seeding_body_volume(const struct talus_scene *scene, const struct talus_b
  * coefficient (1-sin(phi))/(1+sin(phi)). */
 double seeding_k0(const struct talus_scene *scene, const struct talus_body *body);
 
+/* Largest speed [m/s] of a body at the start: over the corners of its bounding box, and at the free
+ * end of a beam. */
+double seeding_largest_speed(const struct talus_scene *scene, const struct talus_body *body);
+
 /* Axis on which gravity is largest (depth runs along it), or TALUS_NO_AXIS without gravity. */
 enum talus_axis seeding_vertical_axis(const struct talus_scene *scene);
 

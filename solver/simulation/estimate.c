@@ -13,10 +13,10 @@ static double critical_at_start(const struct run *run)
     double signal_speed = 0;
     uint64_t materials = 0;
     for (size_t index = 0; index < run->scene.body_count; index++) {
-        const double *v = run->scene.bodies[index].velocity;
         const size_t material = run->body_material[index];
-        signal_speed = fmax(signal_speed, run->materials[material].wave_speed +
-                                              sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]));
+        signal_speed =
+            fmax(signal_speed, run->materials[material].wave_speed +
+                                   seeding_largest_speed(&run->scene, &run->scene.bodies[index]));
         materials |= (uint64_t)1 << material;
     }
     return run_critical_time_step(run, signal_speed, materials);

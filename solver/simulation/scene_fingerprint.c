@@ -89,7 +89,14 @@ static void add_bodies(uint64_t *hash, const struct talus_scene *scene)
         add_reals(hash, body->clip_min, 3);
         add_reals(hash, body->clip_max, 3);
         add_reals(hash, body->lattice_value, 3);
+        add_number(hash, (uint64_t)body->velocity_field);
         add_reals(hash, body->velocity, 3);
+        add_reals(hash, body->rotation_about, 3);
+        add_reals(hash, body->rotation_rate, 3);
+        add_reals(hash, &body->beam_mode, 1);
+        add_reals(hash, body->beam_from, 3);
+        add_reals(hash, body->beam_to, 3);
+        add_reals(hash, body->beam_tip, 3);
         add_reals(hash, body->stress, 6);
         add_reals(hash, reals, sizeof reals / sizeof reals[0]);
     }

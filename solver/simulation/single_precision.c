@@ -48,7 +48,7 @@ static double body_speed(const struct run *run, size_t index, double gravity)
         if (ramp > height / wave)
             fall = fmin(fall, gravity * height * height / (2 * wave * wave * ramp));
     }
-    return fmax(length_of(body->velocity), fall);
+    return fmax(seeding_largest_speed(&run->scene, body), fall);
 }
 
 static double motion_error(const struct run *run, double time_step, double gravity)
@@ -73,7 +73,8 @@ static double force_noise(const struct run *run, double time_step, double gravit
         const struct talus_body *body = &run->scene.bodies[index];
         const double wave = run->materials[body->material_index].wave_speed;
         const double height = body_height(&run->scene, index);
-        const double speed = fmax(length_of(body->velocity), sqrt(2 * gravity * height));
+        const double speed =
+            fmax(seeding_largest_speed(&run->scene, body), sqrt(2 * gravity * height));
         /* Over the density: the weight's stress, or that of an impact at this speed. */
         const double stress = gravity * height > 0 ? gravity * height : wave * speed;
         if (speed > 0)

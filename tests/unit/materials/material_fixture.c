@@ -170,6 +170,47 @@ double slots_deviator_norm(real *const arrays[SYM3_COMPONENTS], size_t slot, siz
     return sqrt(sum);
 }
 
+struct sym3 slots_get(real *const arrays[SYM3_COMPONENTS], size_t slot)
+{
+    return (struct sym3){arrays[0][slot], arrays[1][slot], arrays[2][slot],
+                         arrays[3][slot], arrays[4][slot], arrays[5][slot]};
+}
+
+void slots_set(real *const arrays[SYM3_COMPONENTS], size_t slot, struct sym3 tensor)
+{
+    const real values[SYM3_COMPONENTS] = {tensor.xx, tensor.yy, tensor.zz,
+                                          tensor.xy, tensor.yz, tensor.xz};
+    for (int component = 0; component < SYM3_COMPONENTS; component++)
+        arrays[component][slot] = values[component];
+}
+
+int find_tensor_state(const struct material *material)
+{
+    for (size_t index = 0; index < material->state_count; index++) {
+        const char *end = strrchr(material->state_names[index], '_');
+        if (end != NULL && strcmp(end, "_xx") == 0)
+            return (int)index;
+    }
+    return -1;
+}
+
+struct mat3 random_rotation(uint64_t *state)
+{
+    struct mat3 rotation = {{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
+    for (int axis = 0; axis < 3; axis++) {
+        int p = (axis + 1) % 3;
+        int q = (axis + 2) % 3;
+        double angle = 3.0 * random_value(state);
+        struct mat3 turn = {{{0}}};
+        turn.m[axis][axis] = 1.0;
+        turn.m[p][p] = turn.m[q][q] = (real)cos(angle);
+        turn.m[q][p] = (real)sin(angle);
+        turn.m[p][q] = -turn.m[q][p];
+        rotation = mat3_multiply(turn, rotation);
+    }
+    return rotation;
+}
+
 static void keep(void *context, const struct material_point_step *step)
 {
     struct record *record = context;

@@ -5,6 +5,7 @@
 
 #include "materials/material.h"
 #include "materials/material_point.h"
+#include "math/tensor.h"
 
 #include <math.h>
 #include <setjmp.h>
@@ -57,6 +58,13 @@ double random_value(uint64_t *state);
 double slots_trace(real *const arrays[SYM3_COMPONENTS], size_t slot, size_t component_count);
 double slots_deviator_norm(real *const arrays[SYM3_COMPONENTS], size_t slot,
                            size_t component_count);
+
+/* A tensor of one slot of component arrays (all six). */
+struct sym3 slots_get(real *const arrays[SYM3_COMPONENTS], size_t slot);
+void slots_set(real *const arrays[SYM3_COMPONENTS], size_t slot, struct sym3 tensor);
+/* Index of the first component of a symmetric tensor in the history of a model, or -1. */
+int find_tensor_state(const struct material *material);
+struct mat3 random_rotation(uint64_t *state);
 
 struct record { /* the steps of a path */
     struct material_point_step *steps;

@@ -2,22 +2,7 @@
 /* What every model of the table must do, whatever it is: tested from the table alone. */
 #include "material_fixture.h"
 
-#include "math/tensor.h"
-
 enum { SLOTS = 72 }; /* a whole chunk and a part of one */
-
-static struct sym3 get(double *const arrays[SYM3_COMPONENTS], size_t slot)
-{
-    return (struct sym3){arrays[0][slot], arrays[1][slot], arrays[2][slot],
-                         arrays[3][slot], arrays[4][slot], arrays[5][slot]};
-}
-
-static void set(double *const arrays[SYM3_COMPONENTS], size_t slot, struct sym3 a)
-{
-    const double values[SYM3_COMPONENTS] = {a.xx, a.yy, a.zz, a.xy, a.yz, a.xz};
-    for (int component = 0; component < SYM3_COMPONENTS; component++)
-        arrays[component][slot] = values[component];
-}
 
 /* Strains around the strength of the samples, some compressed, some not, into the components that
  * the batch has; a rate; for a fluid only the volumetric strain. */
@@ -51,34 +36,6 @@ static void update_twice(const struct fixture *fixture, struct slots *slots, uin
     fixture->material->update_stress(fixture->constants, &slots->batch);
 }
 
-/* Index of the first component of a symmetric tensor in the history, or -1. */
-static int find_tensor_state(const struct material *material)
-{
-    for (size_t index = 0; index < material->state_count; index++) {
-        const char *end = strrchr(material->state_names[index], '_');
-        if (end != NULL && strcmp(end, "_xx") == 0)
-            return (int)index;
-    }
-    return -1;
-}
-
-static struct mat3 random_rotation(uint64_t *state)
-{
-    struct mat3 rotation = {{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
-    for (int axis = 0; axis < 3; axis++) {
-        int p = (axis + 1) % 3;
-        int q = (axis + 2) % 3;
-        double angle = 3.0 * random_value(state);
-        struct mat3 turn = {{{0}}};
-        turn.m[axis][axis] = 1.0;
-        turn.m[p][p] = turn.m[q][q] = cos(angle);
-        turn.m[p][q] = -sin(angle);
-        turn.m[q][p] = sin(angle);
-        rotation = mat3_multiply(turn, rotation);
-    }
-    return rotation;
-}
-
 static void assert_same_tensor(struct sym3 a, struct sym3 b, double scale)
 {
     assert_true(sym3_norm(sym3_add_scaled(a, -1.0, b)) <= 1e-11 * scale);
@@ -98,33 +55,33 @@ static void check_objectivity(const struct fixture *fixture, uint64_t *state)
     material->update_stress(fixture->constants, &first.batch);
     fill(fixture, &first, state);
     for (size_t slot = 0; slot < SLOTS; slot++) {
-        struct sym3 strain = get(first.batch.strain, slot);
+        struct sym3 strain = slots_get(first.batch.strain, slot);
         if (material->volumetric)
             second.batch.strain[0][slot] = strain.xx;
         else
-            set(second.batch.strain, slot, sym3_push_forward(rotation, strain));
-        set(second.rate, slot, sym3_push_forward(rotation, get(first.rate, slot)));
+            slots_set(second.batch.strain, slot, sym3_push_forward(rotation, strain));
+        slots_set(second.rate, slot, sym3_push_forward(rotation, slots_get(first.rate, slot)));
         second.volume_ratio[slot] = first.volume_ratio[slot];
         for (size_t index = 0; index < material->state_count; index++)
             second.history[index][slot] = first.history[index][slot];
         if (tensor >= 0)
-            set(second.history + tensor, slot,
-                sym3_push_forward(rotation, get(first.history + tensor, slot)));
+            slots_set(second.history + tensor, slot,
+                      sym3_push_forward(rotation, slots_get(first.history + tensor, slot)));
     }
     material->update_stress(fixture->constants, &first.batch);
     material->update_stress(fixture->constants, &second.batch);
     for (size_t slot = 0; slot < SLOTS; slot++) {
-        struct sym3 stress = get(first.batch.stress, slot);
+        struct sym3 stress = slots_get(first.batch.stress, slot);
         double scale = sym3_norm(stress) + 1e4;
-        assert_same_tensor(get(second.batch.stress, slot), sym3_push_forward(rotation, stress),
-                           scale);
+        assert_same_tensor(slots_get(second.batch.stress, slot),
+                           sym3_push_forward(rotation, stress), scale);
         assert_true(fabs(first.batch.plastic_strain[slot] - second.batch.plastic_strain[slot]) <
                     1e-14);
         assert_true(fabs(first.batch.dissipation[slot] - second.batch.dissipation[slot]) <
                     1e-12 * scale);
         if (tensor >= 0)
-            assert_same_tensor(get(second.history + tensor, slot),
-                               sym3_push_forward(rotation, get(first.history + tensor, slot)),
+            assert_same_tensor(slots_get(second.history + tensor, slot),
+                               sym3_push_forward(rotation, slots_get(first.history + tensor, slot)),
                                1e-2);
     }
     slots_release(&first);
