@@ -120,6 +120,8 @@ enum talus_wall { TALUS_WALL_STOP, TALUS_WALL_KEEP };
 struct talus_boundary_face {
     size_t condition_index;      /* into the table of boundary conditions (solver/boundaries) */
     double friction_coefficient; /* [-] */
+    double adhesion;             /* [Pa] */
+    double turbulence;           /* xi of Voellmy [m/s^2]; 0: none */
 };
 
 struct talus_boundary {

@@ -1,9 +1,10 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* The seam for boundary conditions: one file per condition, one line in boundaries.def.
  *
- * At a node a condition is a normal constraint (two-sided, or one-sided with `tension_release`)
- * and the largest tangential impulse that it can transmit. Everything else - corners, impulses,
- * reactions - is the same for all (contact.c, reaction.c). */
+ * At a node a condition is a constraint - of the velocity along the normal, or of a prescribed
+ * velocity along some axes; two-sided, or one-sided with `tension_release` - and what it can do
+ * against sliding. Everything else - corners, impulses, reactions - is the same for all
+ * (contact.c). */
 #ifndef TALUS_BOUNDARY_H
 #define TALUS_BOUNDARY_H
 
@@ -15,12 +16,27 @@
 #include <stddef.h>
 #include <stdint.h>
 
+struct wall_face;
+
+/* What a condition may know of a node that it holds. */
+struct wall_grip {
+    double push;      /* normal impulse [N s], at least 0 */
+    double area;      /* that the material touches [m^2]: the tributary area, less where the half
+                         cell at the wall is not full */
+    double density;   /* of what lies on that area [kg/m^3] */
+    double gravity;   /* magnitude [m/s^2] */
+    double time_step; /* [s] */
+};
+
 struct boundary_condition {
     const char *name, *reference, *summary;
     const struct parameter *parameters; /* ends with key NULL */
     bool eliminates;                    /* takes out the particles behind it; constrains no node */
-    /* Largest tangential impulse [N s] at a node that is pushed with `normal_impulse` >= 0. */
-    double (*tangential_limit)(double friction_coefficient, double normal_impulse);
+    /* Largest tangential impulse [N s] that it can hold. NULL: none. */
+    double (*tangential_limit)(const struct wall_face *face, const struct wall_grip *grip);
+    /* With a limit only: tangential impulse beyond it, per squared sliding speed
+     * [N s / (m/s)^2]. NULL: none. */
+    double (*tangential_drag)(const struct wall_face *face, const struct wall_grip *grip);
 };
 
 extern const struct boundary_condition *const boundary_table[];
@@ -30,8 +46,12 @@ const struct boundary_condition *boundary_find(const char *name);
 /* One face of one boundary, as the node update needs it. */
 struct wall_face {
     const struct boundary_condition *condition;
-    double friction_coefficient;
-    double normal[3]; /* unit, into the material */
+    double friction_coefficient, adhesion, turbulence; /* [-], [Pa], [m/s^2] (0: none) */
+    double normal[3];                                  /* unit, into the material */
+    double half_cell;                                  /* [m] half the cell width along it */
+    double velocity[3];                                /* [m/s] of the face in this step */
+    unsigned prescribed; /* bit set of the axes along which it prescribes it; 0: the normal */
+    bool moves;          /* its boundary has a velocity */
     enum talus_wall wall;
     bool release;
     double tension_force; /* [N] */

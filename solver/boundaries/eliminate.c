@@ -1,13 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 #include "boundaries/boundary.h"
 
-static double none(double friction_coefficient, double normal_impulse)
-{
-    (void)friction_coefficient;
-    (void)normal_impulse;
-    return 0.0;
-}
-
 static const struct parameter parameters[] = {{.key = NULL}};
 
 const struct boundary_condition boundary_eliminate = {
@@ -16,5 +9,4 @@ const struct boundary_condition boundary_eliminate = {
     .summary = "takes out the particles that pass behind the boundary; their mass is booked",
     .parameters = parameters,
     .eliminates = true,
-    .tangential_limit = none,
 };

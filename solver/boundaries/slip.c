@@ -1,13 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 #include "boundaries/boundary.h"
 
-static double smooth(double friction_coefficient, double normal_impulse)
-{
-    (void)friction_coefficient;
-    (void)normal_impulse;
-    return 0.0;
-}
-
 static const struct parameter parameters[] = {{.key = NULL}};
 
 const struct boundary_condition boundary_slip = {
@@ -15,5 +8,4 @@ const struct boundary_condition boundary_slip = {
     .reference = "Mast 2013, sec. B.2.5 (Planar)",
     .summary = "no motion along the normal, free along the boundary",
     .parameters = parameters,
-    .tangential_limit = smooth,
 };

@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 #include "boundaries/boundary.h"
 
-static double unlimited(double friction_coefficient, double normal_impulse)
+static double unlimited(const struct wall_face *face, const struct wall_grip *grip)
 {
-    (void)friction_coefficient;
-    (void)normal_impulse;
+    (void)face;
+    (void)grip;
     return INFINITY;
 }
 

@@ -42,11 +42,13 @@ static void shape_from_boundary(struct wall_shape *shape, const struct talus_bou
 }
 
 static void face_from_boundary(struct wall_face *face, const struct talus_boundary *boundary,
-                               size_t boundary_index, int face_index)
+                               const struct domain *domain, size_t boundary_index, int face_index)
 {
     const struct talus_boundary_face *source = &boundary->faces[face_index < 0 ? 0 : face_index];
     face->condition = boundary_table[source->condition_index];
     face->friction_coefficient = source->friction_coefficient;
+    face->adhesion = source->adhesion;
+    face->turbulence = source->turbulence;
     face->wall = boundary->wall;
     face->release = boundary->tension_release && face_index >= 0;
     face->tension_force = boundary->tension_force;
@@ -60,6 +62,9 @@ static void face_from_boundary(struct wall_face *face, const struct talus_bounda
         else
             face->condition = boundary_find("stick");
     }
+    for (size_t axis = 0; axis < domain->axis_count; axis++)
+        face->half_cell =
+            fmax(face->half_cell, 0.5 * fabs(face->normal[axis]) * domain->cell[axis]);
 }
 
 int wall_set_create(struct wall_set *walls, const struct talus_scene *scene,
@@ -80,12 +85,13 @@ int wall_set_create(struct wall_set *walls, const struct talus_scene *scene,
         shape_from_boundary(shape, boundary, domain);
         shape->first_face = walls->face_count;
         for (size_t face = 0; face < boundary->face_count; face++) {
-            face_from_boundary(&walls->faces[walls->face_count++], boundary, index, (int)face);
+            face_from_boundary(&walls->faces[walls->face_count++], boundary, domain, index,
+                               (int)face);
             if (walls->faces[walls->face_count - 1].condition->eliminates)
                 shape->eliminates = true;
         }
         if (boundary->shape == TALUS_BOUNDARY_BOX)
-            face_from_boundary(&walls->faces[walls->face_count++], boundary, index, -1);
+            face_from_boundary(&walls->faces[walls->face_count++], boundary, domain, index, -1);
     }
     return 0;
 }

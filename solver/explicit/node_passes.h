@@ -10,8 +10,8 @@
 enum { NODE_CHUNK = 256, WALL_CHUNK = 128 }; /* node blocks, wall nodes */
 /* Per chunk and face: impulse 3, moment 3, area; after the faces of a chunk: impulse of the walls
  * on the material 3, its magnitude, work of friction; what the walls change of local damping:
- * energy, impulse 3. */
-enum { FACE_SUMS = 7, CHUNK_SUMS = 9 };
+ * energy, impulse 3; work of the walls on the material. */
+enum { FACE_SUMS = 7, CHUNK_SUMS = 10 };
 
 static inline size_t wall_partial_stride(const struct run *run)
 {

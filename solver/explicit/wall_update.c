@@ -14,17 +14,32 @@ static void free_increment(const struct run *run, const struct wall_node *wall, 
         increment[axis] = node_free_increment(run, wall->block, wall->lane, axis, mass, factor);
 }
 
+static struct contact contact_at(const struct run *run, const struct wall_node *wall)
+{
+    const struct node_blocks *nodes = &run->grid.nodes;
+    const double *gravity = run->scene.gravity;
+    return (struct contact){
+        .faces = run->walls.faces,
+        .node = &wall->faces,
+        .mass = node_values(nodes, wall->block, nodes->layout.mass)[wall->lane],
+        .time_step = run->time_step,
+        .density = run->reference_density,
+        .gravity =
+            sqrt(gravity[0] * gravity[0] + gravity[1] * gravity[1] + gravity[2] * gravity[2]),
+    };
+}
+
 void wall_nodes_hold_back(struct run *run, size_t begin, size_t end, double factor)
 {
     const struct node_blocks *nodes = &run->grid.nodes;
     for (size_t index = begin; index < end; index++) {
         const struct wall_node *wall = &run->wall_nodes[index];
-        const double mass = node_values(nodes, wall->block, nodes->layout.mass)[wall->lane];
-        if (mass <= run->mass_cutoff)
+        struct contact contact = contact_at(run, wall);
+        if (contact.mass <= run->mass_cutoff)
             continue;
         double increment[3];
-        free_increment(run, wall, mass, factor, increment);
-        contact_hold_back(run->walls.faces, &wall->faces, mass, run->time_step, increment);
+        free_increment(run, wall, contact.mass, factor, increment);
+        contact_hold_back(&contact, increment);
         for (uint32_t axis = 0; axis < run->grid.domain.axis_count; axis++)
             node_values(nodes, wall->block, nodes->layout.kick + axis)[wall->lane] =
                 (real)increment[axis];
@@ -86,20 +101,21 @@ static void enter_wall(struct run *run, const struct wall_node *wall, double fac
     }
 }
 
-/* Local damping along the motion that the walls leave; never reverses it. */
+/* Local damping along the motion that the walls leave, relative to them; never reverses it. */
 static void brake_at_wall(struct contact *contact, const struct wall_passage *passage,
                           double damping, double *damping_sums)
 {
     double square = 0, gain = 0;
     for (size_t axis = 0; axis < 3; axis++) {
-        square += contact->velocity[axis] * contact->velocity[axis];
-        gain += (contact->velocity[axis] - passage->start[axis]) * contact->velocity[axis];
+        const double sliding = contact->velocity[axis] - contact->frame[axis];
+        square += sliding * sliding;
+        gain += (contact->velocity[axis] - passage->start[axis]) * sliding;
     }
     if (square == 0)
         return;
     const double share = fmin(1.0, damping * fabs(gain) / square);
     for (size_t axis = 0; axis < 3; axis++) {
-        const double braked = -share * contact->velocity[axis];
+        const double braked = -share * (contact->velocity[axis] - contact->frame[axis]);
         contact->velocity[axis] += braked;
         contact->handed_velocity[axis] += braked;
         damping_sums[0] -=
@@ -108,23 +124,32 @@ static void brake_at_wall(struct contact *contact, const struct wall_passage *pa
     }
 }
 
+/* Work of the walls on the material in the step [J]; 0 where they stand still. */
+static double work_of_walls(const struct run *run, const struct contact *contact)
+{
+    double work = 0;
+    for (size_t place = 0; place < contact->node->count; place++) {
+        const struct wall_face *face = &run->walls.faces[contact->node->face[place]];
+        for (size_t axis = 0; axis < 3 && face->moves; axis++)
+            work += contact->impulse[place][axis] * face->velocity[axis];
+    }
+    return work;
+}
+
 /* Applies the walls at one node and books what they did. */
 static void update_wall_node(struct run *run, struct wall_node *wall, double factor,
                              double *partial)
 {
     const struct node_blocks *nodes = &run->grid.nodes;
     memset(wall->impulse, 0, sizeof wall->impulse);
-    struct contact contact = {.faces = run->walls.faces,
-                              .node = &wall->faces,
-                              .mass =
-                                  node_values(nodes, wall->block, nodes->layout.mass)[wall->lane],
-                              .time_step = run->time_step};
+    struct contact contact = contact_at(run, wall);
     if (contact.mass <= run->mass_cutoff)
         return;
     double *totals = partial + run->walls.face_count * FACE_SUMS;
     struct wall_passage passage = {.start = {0, 0, 0}};
     enter_wall(run, wall, factor, &contact, &passage, totals + 5);
     contact_solve(&contact);
+    const double work = work_of_walls(run, &contact);
     double square = 0;
     for (uint32_t axis = 0; axis < run->grid.domain.axis_count; axis++) {
         wall->impulse[axis] =
@@ -139,9 +164,12 @@ static void update_wall_node(struct run *run, struct wall_node *wall, double fac
             (real)contact.velocity[axis];
         node_values(nodes, wall->block, nodes->layout.correction + axis)[wall->lane] =
             (real)(contact.handed_velocity[axis] - passage.kept[axis]);
-        /* Along the normal the boundary does no work; along it this is the work of friction. */
         totals[4] -= wall->impulse[axis] * contact.velocity[axis];
     }
+    /* What walls that move do beyond their work on the material stays behind as friction, as all
+     * does that walls at rest do. */
+    totals[9] += work;
+    totals[4] += work;
     totals[3] += sqrt(square);
     add_face_sums(run, wall, &contact, partial);
 }
@@ -234,6 +262,7 @@ void wall_nodes_sum(struct run *run)
         run->audit.exchanged += totals[3];
         run->energy.wall += totals[4];
         run->energy.damping += totals[5];
+        run->energy.external += totals[9];
     }
     for (size_t face = 0; face < run->walls.face_count; face++) {
         const size_t boundary = run->walls.faces[face].boundary_index;

@@ -121,7 +121,9 @@ static bool boundaries_mirror(const struct talus_scene *scene, size_t axis, doub
     for (size_t face = 0; face < a->face_count && same; face++) {
         size_t other = a->shape == TALUS_BOUNDARY_BOX && face / 2 == axis ? face ^ 1u : face;
         same = a->faces[face].condition_index == b->faces[other].condition_index &&
-               a->faces[face].friction_coefficient == b->faces[other].friction_coefficient;
+               a->faces[face].friction_coefficient == b->faces[other].friction_coefficient &&
+               a->faces[face].adhesion == b->faces[other].adhesion &&
+               a->faces[face].turbulence == b->faces[other].turbulence;
     }
     if (a->shape == TALUS_BOUNDARY_BOX) {
         for (size_t k = 0; k < scene->axis_count && same; k++) {

@@ -272,11 +272,13 @@ static void finish_box(struct scene_reader *reader, const struct scene_path *pat
     struct talus_boundary *boundary = &keys->boundary;
     struct scene_path shape = {.parent = path, .key = "box"};
     struct scene_path corner = {.parent = &shape, .key = "max"};
+    struct talus_boundary_face common = {.condition_index = 0};
     boundary->face_count = 2 * reader->axis_count;
+    scene_condition_finish(reader, path, given, &keys->condition, &common);
     for (size_t face = 0; face < boundary->face_count; face++) {
         bool overridden = keys->faces[face].index != SIZE_MAX;
         if (!overridden)
-            scene_condition_finish(reader, path, given, &keys->condition, &boundary->faces[face]);
+            boundary->faces[face] = common;
         struct scene_path faces = {.parent = path, .key = "faces"};
         struct scene_path here = {.parent = &faces, .key = face_words[face]};
         if (overridden && keys->condition.index != SIZE_MAX &&
@@ -331,10 +333,9 @@ static void read_boundary(struct scene_reader *reader, const struct scene_path *
 {
     struct boundary_keys keys;
     memset(&keys, 0, sizeof keys);
-    keys.condition.index = SIZE_MAX;
-    keys.condition.friction_coefficient = keys.condition.friction_angle_deg = NAN;
+    scene_condition_init(&keys.condition);
     for (size_t face = 0; face < 6; face++)
-        keys.faces[face] = keys.condition;
+        scene_condition_init(&keys.faces[face]);
     for (size_t k = 0; k < reader->axis_count; k++)
         keys.boundary.box_min[k] = keys.boundary.box_max[k] = keys.boundary.normal[k] = NAN;
     keys.moment_about[0] = NAN;

@@ -44,30 +44,50 @@ static bool has_parameter(const struct boundary_condition *condition, const char
     return parameter->key != NULL;
 }
 
+/* Keys of another condition. */
+static void refuse_keys(struct scene_reader *reader, const struct scene_path *path,
+                        const json_t *given, size_t index)
+{
+    static const char *const keys[] = {"friction_coefficient", "friction_angle", "adhesion",
+                                       "turbulence"};
+    for (size_t key = 0; key < sizeof keys / sizeof keys[0]; key++) {
+        struct scene_path here = {.parent = path, .key = keys[key]};
+        if (json_object_get(given, keys[key]) != NULL &&
+            !has_parameter(boundary_table[index], keys[key]))
+            scene_mistake(reader, &here, "contradiction", NULL, NULL,
+                          "'%s' does not apply to the condition \"%s\"", keys[key],
+                          condition_words[index]);
+    }
+}
+
+static double given_or_zero(double value)
+{
+    return isnan(value) ? 0.0 : value;
+}
+
 void scene_condition_finish(struct scene_reader *reader, const struct scene_path *path,
                             const json_t *given, const struct scene_condition *condition,
                             struct talus_boundary_face *face)
 {
     bool angle = json_object_get(given, "friction_angle") != NULL;
-    const char *key = angle ? "friction_angle" : "friction_coefficient";
-    bool present = angle || json_object_get(given, key) != NULL;
-    struct scene_path here = {.parent = path, .key = key};
+    bool present = angle || json_object_get(given, "friction_coefficient") != NULL;
+    struct scene_path here = {.parent = path, .key = "friction_coefficient"};
     if (condition->index == SIZE_MAX)
         return;
-    bool wanted = has_parameter(boundary_table[condition->index], key);
-    if (wanted && !present)
+    refuse_keys(reader, path, given, condition->index);
+    if (!present && has_parameter(boundary_table[condition->index], here.key))
         scene_mistake(reader, &here, "required", NULL, NULL,
                       "friction needs 'friction_coefficient' or 'friction_angle'");
-    if (!wanted && present)
-        scene_mistake(reader, &here, "contradiction", NULL, NULL,
-                      "'%s' does not apply to the condition \"%s\"", key,
-                      condition_words[condition->index]);
     face->condition_index = condition->index;
-    face->friction_coefficient = 0.0;
-    if (angle)
-        face->friction_coefficient = tan(condition->friction_angle_deg * radians_per_degree);
-    else if (present)
-        face->friction_coefficient = condition->friction_coefficient;
+    face->friction_coefficient = angle ? tan(condition->friction_angle_deg * radians_per_degree)
+                                       : given_or_zero(condition->friction_coefficient);
+    face->adhesion = given_or_zero(condition->adhesion);
+    face->turbulence = given_or_zero(condition->turbulence);
+}
+
+void scene_condition_init(struct scene_condition *condition)
+{
+    *condition = (struct scene_condition){SIZE_MAX, NAN, NAN, NAN, NAN};
 }
 
 const char *scene_condition_name(size_t index)

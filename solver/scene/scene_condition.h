@@ -8,6 +8,7 @@
 struct scene_condition {                             /* as given */
     size_t index;                                    /* into the table of conditions */
     double friction_coefficient, friction_angle_deg; /* NAN: not given */
+    double adhesion, turbulence;                     /* the same */
 };
 
 /* Entries for tables whose target starts with a struct scene_condition. */
@@ -36,9 +37,18 @@ struct scene_condition {                             /* as given */
          .alternative = "friction",                                                                \
          .offset = offsetof(struct scene_condition, friction_angle_deg),                           \
          .meaning = "angle whose tangent is the friction coefficient"},                            \
-        {.key = "adhesion", .unsupported = true},                                                  \
+        {.key = "adhesion",                                                                        \
+         .kind = SCENE_NUMBER,                                                                     \
+         .unit = "Pa",                                                                             \
+         .maximum = INFINITY,                                                                      \
+         .default_value = NAN,                                                                     \
+         .offset = offsetof(struct scene_condition, adhesion),                                     \
+         .meaning = "friction: shear stress that holds without any push"},                         \
     {                                                                                              \
-        .key = "turbulence", .unsupported = true                                                   \
+        .key = "turbulence", .kind = SCENE_NUMBER, .unit = "m/s^2", .maximum = INFINITY,           \
+        .above_minimum = true, .default_value = NAN,                                               \
+        .offset = offsetof(struct scene_condition, turbulence),                                    \
+        .meaning = "friction: xi of Voellmy's shear stress rho g v^2 / xi"                         \
     }
 
 extern const struct scene_field scene_condition_fields[];
@@ -47,6 +57,8 @@ void scene_condition_name_read(struct scene_reader *reader, const struct scene_p
                                const json_t *given, void *target, json_t *effective);
 json_t *scene_condition_name_schema(void);
 
+/* Nothing given yet. */
+void scene_condition_init(struct scene_condition *condition);
 /* Checks what belongs to the condition (`given`: the object that holds its keys) and turns it into
  * the face's own terms. */
 void scene_condition_finish(struct scene_reader *reader, const struct scene_path *path,

@@ -124,6 +124,8 @@ static void add_boundary(uint64_t *hash, const struct talus_boundary *boundary)
     for (size_t face = 0; face < boundary->face_count; face++) {
         add_number(hash, boundary->faces[face].condition_index);
         add_reals(hash, &boundary->faces[face].friction_coefficient, 1);
+        add_reals(hash, &boundary->faces[face].adhesion, 1);
+        add_reals(hash, &boundary->faces[face].turbulence, 1);
     }
 }
 

@@ -88,7 +88,7 @@ class Schema(unittest.TestCase):
     def test_what_is_missing_from_the_build_is_missing_from_the_schema(self):
         text = str(self.schema)
         for word in ("quasi_static", "gimp", "apic", "flip_ratio", "polygon", "beam_mode",
-                     "traction", "front_smoothing", "adhesion", "turbulence", "hybrid",
+                     "traction", "front_smoothing", "hybrid",
                      "axisymmetric", "tait", "max_iterations"):
             self.assertNotIn(f"'{word}'", text)
 

@@ -288,21 +288,71 @@ static void test_hold_back(void **state)
     double increment[3] = {1, -2, 0.5};
     bench_init(&bench, 1.0, increment);
     add_face(&bench, 0, 1, 0, "slip", 0);
-    contact_hold_back(bench.faces, &bench.node, 1.0, 0.01, increment);
+    contact_hold_back(&bench.contact, increment);
     assert_vector(increment, 1, 0, 0.5, 0);
     /* Friction holds back what it can hold: all of the tangent, or its limit of 0.8. */
     for (int strong = 0; strong < 2; strong++) {
         double pushed[3] = {1, -2, 0};
         bench_init(&bench, 1.0, pushed);
         add_face(&bench, 0, 1, 0, "friction", strong ? 0.6 : 0.4);
-        contact_hold_back(bench.faces, &bench.node, 1.0, 0.01, pushed);
+        contact_hold_back(&bench.contact, pushed);
         assert_vector(pushed, strong ? 0 : 0.2, 0, 0, 1e-15);
     }
     double lifted[3] = {1, 2, 0};
     bench_init(&bench, 1.0, lifted);
     add_face(&bench, 0, 1, 0, "stick", 0)->release = true;
-    contact_hold_back(bench.faces, &bench.node, 1.0, 0.01, lifted);
+    contact_hold_back(&bench.contact, lifted);
     assert_vector(lifted, 1, 2, 0, 0);
+}
+
+/* The impulses of the area in contact: all of it where the half cell at the wall is full, a share
+ * where it is not. */
+static void test_adhesion_holds_without_a_push(void **state)
+{
+    (void)state;
+    for (int full = 0; full < 2; full++) {
+        struct bench bench;
+        const double mass = full ? 2000 * 0.5 * 0.1 : 2000 * 0.5 * 0.1 * 0.25;
+        bench_init(&bench, mass, (double[3]){3, 0.2, 4}); /* pulled */
+        bench.contact.density = 2000;
+        bench.node.area[0] = 0.5;
+        struct wall_face *face = add_face(&bench, 0, 1, 0, "friction", 0.7);
+        face->half_cell = 0.1;
+        face->adhesion = 1000;
+        solve(&bench);
+        /* a A dt = 5 N s, or a quarter; along (0.6, 0, 0.8). */
+        const double held = full ? 5.0 : 1.25;
+        assert_vector(bench.contact.velocity, 3 - 0.6 * held / mass, 0, 4 - 0.8 * held / mass,
+                      1e-14);
+        face->adhesion = 1e6; /* more than enough */
+        solve(&bench);
+        assert_vector(bench.contact.velocity, 0, 0, 0, 0);
+    }
+}
+
+/* m v + k v^2 = m w - mu R with k = rho g A dt / xi = 2000 * 10 * 0.5 * 0.01 / 500 = 0.2. */
+static void test_turbulence_slows_and_never_reverses(void **state)
+{
+    (void)state;
+    struct bench bench;
+    bench_init(&bench, 100, (double[3]){30, -1, 0});
+    bench.contact.density = 2000;
+    bench.contact.gravity = 10;
+    bench.node.area[0] = 0.5;
+    struct wall_face *face = add_face(&bench, 0, 1, 0, "friction", 0.2);
+    face->half_cell = 0.1;
+    face->turbulence = 500;
+    solve(&bench);
+    const double v = bench.contact.velocity[0];
+    assert_close(100 * v + 0.2 * v * v, 100 * 30 - 0.2 * 100, 1e-14, 3000);
+    assert_close(bench.contact.impulse[0][0], -(20 + 0.2 * v * v), 1e-12, 1);
+    face->turbulence = 1e-9; /* takes nearly all, whatever the step */
+    solve(&bench);
+    assert_true(bench.contact.velocity[0] > 0 && bench.contact.velocity[0] < 1e-3);
+    /* Below the limit of friction it stands still. */
+    bench.contact.free_velocity[0] = 0.1999;
+    solve(&bench);
+    assert_true(bench.contact.velocity[0] == 0);
 }
 
 /* Random faces, conditions and velocities: the impulses always add up (in solve), a face that may
@@ -358,6 +408,8 @@ int main(void)
         cmocka_unit_test(test_inside_of_a_box_is_held),
         cmocka_unit_test(test_keep_against_stop),
         cmocka_unit_test(test_hold_back),
+        cmocka_unit_test(test_adhesion_holds_without_a_push),
+        cmocka_unit_test(test_turbulence_slows_and_never_reverses),
         cmocka_unit_test(test_random_contacts),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
