@@ -24,23 +24,44 @@ static size_t find_released(const struct contact *contact, const bool active[NOD
 
 /* Finds the faces in contact, and their normal impulses for a given free increment. `reach` is the
  * velocity whose excess in the span the walls take away: `taken`. */
-static void find_active(struct contact *contact, const struct directions *directions,
-                        const double reach[3], bool active[NODE_FACE_MAX], struct span *span,
-                        double taken[3])
+static void find_active(struct contact *contact, const double reach[3], bool active[NODE_FACE_MAX],
+                        struct span *span, double taken[3])
 {
+    struct directions directions;
+    directions_list(contact, &directions);
     for (size_t place = 0; place < contact->node->count; place++)
         active[place] = true;
     for (;;) {
         double impulse[3];
-        directions_span(directions, active, span);
+        directions_span(&directions, active, span);
         span_excess(span, reach, taken);
         for (size_t axis = 0; axis < 3; axis++)
             impulse[axis] = -contact->mass * taken[axis];
-        directions_split(directions, active, impulse, contact->impulse);
+        directions_split(&directions, active, impulse, contact->impulse);
         const size_t released = find_released(contact, active);
         if (released == contact->node->count)
             return;
         active[released] = false;
+    }
+}
+
+/* The same for the one face of most wall nodes, whose normal is all that it prescribes. */
+static void find_alone(struct contact *contact, const double reach[3], bool *active,
+                       struct span *span, double taken[3])
+{
+    const struct wall_face *face = contact_face(contact, 0);
+    const double *normal = face->normal;
+    double speed = 0;
+    for (size_t axis = 0; axis < 3 && face->moves; axis++)
+        speed += normal[axis] * contact_face_speed(contact, face, axis);
+    const double excess = vector_dot(reach, normal) - speed;
+    *active = !face->release || -contact->mass * excess > face->tension_force * contact->time_step;
+    span->rank = *active ? 1 : 0;
+    span->speed[0] = speed;
+    for (size_t axis = 0; axis < 3; axis++) {
+        span->basis[0][axis] = normal[axis];
+        taken[axis] = *active ? excess * normal[axis] : 0.0;
+        contact->impulse[0][axis] = -contact->mass * taken[axis];
     }
 }
 
@@ -90,13 +111,14 @@ void contact_solve(struct contact *contact)
         return;
     }
     const bool keep = keeps_velocity(contact);
-    struct directions directions;
+    const double *reach = keep ? contact->acceleration_increment : w;
     struct span span;
     bool active[NODE_FACE_MAX] = {false};
     double taken[3], excess[3], tangent[3];
-    directions_list(contact, &directions);
-    find_active(contact, &directions, keep ? contact->acceleration_increment : w, active, &span,
-                taken);
+    if (contact->node->count == 1 && contact_face(contact, 0)->prescribed == 0)
+        find_alone(contact, reach, active, &span, taken);
+    else
+        find_active(contact, reach, active, &span, taken);
     span_excess(&span, w, excess);
     for (size_t axis = 0; axis < 3; axis++) {
         for (size_t index = 0; index < span.rank; index++)
