@@ -46,6 +46,11 @@ enum talus_stress_update { TALUS_STRESS_MODIFIED_LAST, TALUS_STRESS_LAST };
 enum talus_strain { TALUS_STRAIN_FINITE, TALUS_STRAIN_SMALL };
 enum talus_precision { TALUS_PRECISION_DOUBLE, TALUS_PRECISION_SINGLE };
 enum talus_anti_locking_control { TALUS_CONTROL_NONE, TALUS_CONTROL_CELL };
+enum talus_anti_locking_field {
+    TALUS_FIT_VOLUMETRIC,
+    TALUS_FIT_FULL,
+    TALUS_FIT_FULL_CONSTANT_VOLUME
+};
 enum talus_anti_locking_apply { TALUS_APPLY_STRAIN_AND_STRESS, TALUS_APPLY_STRAIN };
 
 struct talus_solver_options {
@@ -56,7 +61,8 @@ struct talus_solver_options {
     double pic_rate;    /* lambda [1/s]; 0: pure FLIP */
     enum talus_stress_update stress_update;
     enum talus_strain strain;
-    enum talus_anti_locking_control anti_locking; /* field: volumetric */
+    enum talus_anti_locking_control anti_locking;
+    enum talus_anti_locking_field anti_locking_field;
     enum talus_anti_locking_apply anti_locking_apply;
     double viscous_damping;         /* C [-] of the viscous stress C rho h c tr(d) 1 */
     double local_damping;           /* [-] share of the out-of-balance force */

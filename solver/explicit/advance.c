@@ -213,8 +213,9 @@ void advance_stress(struct run *run, struct block_scratch *scratch, struct parti
     const struct material_outcome outcome =
         material_stage_run(run, block, scratch, still ? 0.0 : run->time_step);
     fetch_portion(&scratch->ahead);
-    if (outcome.flowed)
-        kinematics_store(run, block, scratch);
+    if (outcome.flowed || outcome.refitted)
+        kinematics_store(run, block, scratch, outcome.refitted);
+    sums->fall_backs += outcome.fall_backs;
     if (outcome.dissipated)
         sums->plastic_energy +=
             lanes_weighted_sum(scratch->reference_volume, scratch->dissipation, count);

@@ -362,20 +362,32 @@ double kinematics_advance(struct run *run, const struct particle_block *block,
     return least;
 }
 
+/* 1 in the slots whose strain goes back to its stored form. */
+static const real *renewed(const struct run *run, const struct particle_block *block,
+                           struct block_scratch *scratch, size_t count, bool all)
+{
+    if (!all)
+        return scratch->plastic_strain;
+    for (size_t slot = 0; slot < count; slot++)
+        scratch->mean[slot] = !material_of(run, block, slot)->model->volumetric;
+    return scratch->mean;
+}
+
 void kinematics_store(struct run *run, const struct particle_block *block,
-                      struct block_scratch *scratch)
+                      struct block_scratch *scratch, bool all)
 {
     const size_t count = (size_t)block->row_count * LANE_COUNT;
+    const real *marks = renewed(run, block, scratch, count, all);
     real *stored[6], *fresh[6];
     strain_arrays(run, block, stored);
     memcpy(fresh, run->finite_strain ? scratch->gradient : scratch->strain, sizeof fresh);
     if (run->finite_strain)
         exp_strain_batch(count, run->strain_components, scratch->strain, fresh);
     for (size_t slot = 0; slot < count; slot += LANE_COUNT) {
-        const lane_mask yielded = lanes_load(scratch->plastic_strain + slot) > 0;
+        const lane_mask renew = lanes_load(marks + slot) > 0;
         for (size_t component = 0; component < run->stored_components; component++)
             lanes_store(stored[component] + slot,
-                        lanes_select(yielded, lanes_load(fresh[component] + slot),
+                        lanes_select(renew, lanes_load(fresh[component] + slot),
                                      lanes_load(stored[component] + slot)));
     }
 }

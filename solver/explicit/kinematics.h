@@ -13,9 +13,9 @@ double kinematics_advance(struct run *run, const struct particle_block *block,
                           struct block_scratch *scratch, double time_step);
 
 /* Elastic strain of the materials -> stored form, for slots whose strain the material changed
- * (plastic_strain > 0). */
+ * (plastic_strain > 0), or for `all` but volumetric materials. */
 void kinematics_store(struct run *run, const struct particle_block *block,
-                      struct block_scratch *scratch);
+                      struct block_scratch *scratch, bool all);
 
 /* Stored form -> strain of the materials, without motion (energies, frames). */
 void kinematics_load(const struct run *run, const struct particle_block *block,

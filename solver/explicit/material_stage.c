@@ -1,10 +1,8 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 #include "explicit/material_stage.h"
 
-#include "antilocking/anti_locking.h"
+#include "explicit/anti_locking_stage.h"
 #include "explicit/stage_clock.h"
-#include "math/log1p_series.h"
-#include "math/tensor.h"
 
 #include <assert.h>
 #include <string.h>
@@ -39,116 +37,6 @@ static const real *weights_of(const struct run *run, const struct particle_block
     for (size_t slot = 0; slot < count; slot++)
         scratch->weight[slot] = material_of_slot(run, block, slot) == material ? mass[slot] : 0;
     return scratch->weight;
-}
-
-static inline lanes trace_at(real *const tensor[6], size_t slot)
-{
-    return lanes_load(tensor[0] + slot) + lanes_load(tensor[1] + slot) +
-           lanes_load(tensor[2] + slot);
-}
-
-/* Mean trace of each cell. */
-static lanes mean_trace(size_t count, const real *weight, real *const tensor[6])
-{
-    lanes total = {0}, sum = {0};
-    for (size_t slot = 0; slot < count; slot += LANE_COUNT) {
-        const lanes trace = trace_at(tensor, slot);
-        const lanes w = lanes_load(weight + slot);
-        total += w;
-        sum += w * trace;
-    }
-    return sum / lanes_select(total > 0, total, lanes_splat(1));
-}
-
-/* A third of what brings the trace of a row to the mean; 0 where the slot takes no part. */
-static inline lanes shift_at(const real *weight, real *const tensor[6], size_t slot, lanes mean)
-{
-    return lanes_keep(lanes_load(weight + slot) > 0,
-                      (real)(1.0 / 3.0) * (mean - trace_at(tensor, slot)));
-}
-
-/* Brings the trace of the logarithmic strain to the mean of the cell, and the stored form with it:
- * b <- exp(2 shift) b, e <- e + s e + s/2. `components` is a constant where this is inlined;
- * stretch [count] is free. */
-TALUS_INLINE void shift_finite(size_t count, size_t components, const real *weight,
-                               real *const strain[6], real *const stored[6], real *stretch)
-{
-    const lanes mean = mean_trace(count, weight, strain);
-    for (size_t slot = 0; slot < count; slot += LANE_COUNT) {
-        const lanes shift = shift_at(weight, strain, slot, mean);
-        lanes_store(stretch + slot, 2 * shift);
-        for (size_t component = 0; component < 3; component++)
-            lanes_store(strain[component] + slot, lanes_load(strain[component] + slot) + shift);
-    }
-    expm1_array(count, stretch, stretch);
-    for (size_t slot = 0; slot < count; slot += LANE_COUNT) {
-        const lanes s = lanes_load(stretch + slot);
-        for (size_t component = 0; component < components; component++) {
-            const lanes e = lanes_load(stored[component] + slot);
-            const lanes half = lanes_splat(component < 3 ? (real)0.5 : 0);
-            lanes_store(stored[component] + slot, e + s * (e + half));
-        }
-    }
-}
-
-static void shift_small(size_t count, const real *weight, real *const strain[6],
-                        real *const stored[6])
-{
-    const lanes mean = mean_trace(count, weight, strain);
-    for (size_t slot = 0; slot < count; slot += LANE_COUNT) {
-        const lanes shift = shift_at(weight, strain, slot, mean);
-        for (size_t component = 0; component < 3; component++) {
-            lanes_store(strain[component] + slot, lanes_load(strain[component] + slot) + shift);
-            lanes_store(stored[component] + slot, lanes_load(stored[component] + slot) + shift);
-        }
-    }
-}
-
-static void shift_strain(const struct run *run, const struct particle_block *block,
-                         struct block_scratch *scratch, size_t count, const real *weight)
-{
-    real *stored[6] = {NULL};
-    assert(run->strain_components >= 3 && run->strain_components <= 6);
-    for (uint32_t component = 0; component < run->strain_components; component++)
-        stored[component] = particle_values(&run->grid.layout, block, PARTICLE_STRAIN, component);
-    if (!run->finite_strain)
-        shift_small(count, weight, scratch->strain, stored);
-    else if (run->strain_components == 6)
-        shift_finite(count, 6, weight, scratch->strain, stored, scratch->mean);
-    else if (run->strain_components == 4)
-        shift_finite(count, 4, weight, scratch->strain, stored, scratch->mean);
-    else
-        shift_finite(count, 3, weight, scratch->strain, stored, scratch->mean);
-}
-
-/* Replaces the volumetric trial strain by its cell average: strain and stored form,
- * b <- exp(2 shift) b at finite strain (Mast 2013, eq. 4.40). */
-static void average_strain(const struct run *run, const struct particle_block *block,
-                           const struct material *model, struct block_scratch *scratch,
-                           size_t count, const real *weight)
-{
-    if (model->volumetric) {
-        real *stored = particle_values(&run->grid.layout, block, PARTICLE_STRAIN, 0);
-        cell_average(count, weight, scratch->strain[0]);
-        for (size_t slot = 0; slot < count; slot += LANE_COUNT)
-            lanes_store(stored + slot, lanes_select(lanes_load(weight + slot) > 0,
-                                                    lanes_load(scratch->strain[0] + slot),
-                                                    lanes_load(stored + slot)));
-        return;
-    }
-    shift_strain(run, block, scratch, count, weight);
-}
-
-/* Replaces the mean stress by its cell average. */
-static void average_stress(struct block_scratch *scratch, size_t count, const real *weight)
-{
-    const lanes mean = mean_trace(count, weight, scratch->stress);
-    for (size_t slot = 0; slot < count; slot += LANE_COUNT) {
-        const lanes shift = shift_at(weight, scratch->stress, slot, mean);
-        for (size_t component = 0; component < 3; component++)
-            lanes_store(scratch->stress[component] + slot,
-                        lanes_load(scratch->stress[component] + slot) + shift);
-    }
 }
 
 static void history_arrays(const struct run *run, const struct particle_block *block,
@@ -287,9 +175,7 @@ struct material_outcome material_stage_run(struct run *run, const struct particl
 {
     struct material_outcome outcome = {.flowed = false, .dissipated = false};
     const size_t count = (size_t)block->row_count * LANE_COUNT;
-    const bool averages = run->scene.solver.anti_locking == TALUS_CONTROL_CELL;
-    const bool averages_stress =
-        averages && run->scene.solver.anti_locking_apply == TALUS_APPLY_STRAIN_AND_STRESS;
+    const bool smooths = run->scene.solver.anti_locking != TALUS_CONTROL_NONE;
     const uint64_t present = materials_present(run, block);
     scratch->materials = present;
     const bool single = is_single(present);
@@ -299,17 +185,19 @@ struct material_outcome material_stage_run(struct run *run, const struct particl
         if ((present >> material & 1) == 0)
             continue;
         const struct material *model = run->materials[material].model;
-        if (averages)
-            average_strain(run, block, model, scratch, count,
-                           weights_of(run, block, scratch, material, single));
+        const real *weight = smooths ? weights_of(run, block, scratch, material, single) : NULL;
+        struct anti_locking fit;
+        anti_locking_begin(run, block, model, weight, &fit);
+        const bool refitted = anti_locking_strain(run, block, &fit, scratch);
+        outcome.refitted = outcome.refitted || refitted;
+        outcome.fall_backs += fit.cells.fall_backs;
         stage_clock_lap(scratch->clock, STAGE_ANTI_LOCKING);
         const bool flowed = single ? update_single(run, block, scratch, material, time_step)
                                    : update_compacted(run, block, scratch, material, time_step);
         outcome.flowed = outcome.flowed || flowed;
         outcome.dissipated = outcome.dissipated || flowed || (model->dissipates && !model->plastic);
         stage_clock_lap(scratch->clock, STAGE_MATERIAL);
-        if (averages_stress)
-            average_stress(scratch, count, weights_of(run, block, scratch, material, single));
+        anti_locking_stress(run, &fit, scratch);
         stage_clock_lap(scratch->clock, STAGE_ANTI_LOCKING);
     }
     return outcome;

@@ -7,8 +7,10 @@
 
 /* What the materials of a block did in a step. */
 struct material_outcome {
-    bool flowed;     /* plastic strain: strains have to go back to their stored form */
-    bool dissipated; /* scratch->dissipation holds something */
+    bool flowed;       /* plastic strain: strains have to go back to their stored form */
+    bool refitted;     /* whole strains were fitted: all of them have to go back */
+    bool dissipated;   /* scratch->dissipation holds something */
+    size_t fall_backs; /* cells in which a linear fit was not possible */
 };
 
 /* Reads the kinematics in scratch; writes strain, stress, plastic_strain, dissipation, the history

@@ -73,7 +73,8 @@ struct tile_sums {
     double least_jacobian;                 /* smallest det of an incremental deformation gradient */
     uint32_t bad_particle;                 /* id of one where that is not positive, or NONE */
     double plastic_energy, viscous_energy; /* dissipated in the step [J] */
-    double kinetic, strain, potential;     /* where run->measures, and by run_measure_energy [J] */
+    uint64_t fall_backs;               /* of anti-locking: control volumes without a linear fit */
+    double kinetic, strain, potential; /* where run->measures, and by run_measure_energy [J] */
 };
 
 /* What a chunk of node blocks adds up in the node update; summed over the chunks in order. */
@@ -170,6 +171,9 @@ struct run {
     double mass_cutoff;         /* nodes lighter than this carry no motion [kg] */
     double reference_density;   /* smallest of the scene, for contact areas [kg/m^3] */
     bool over_critical_warned, failed;
+    uint64_t fall_backs;       /* of anti-locking since the start, over all steps */
+    uint64_t fall_backs_worst; /* in one step */
+    bool fall_back_warned;
 
     bool sample_expected; /* at the end of the next step */
     bool measures;        /* the second pass adds up the energies */

@@ -63,6 +63,7 @@ static struct tile_sums sum_tiles(const struct run *run)
             total.bad_particle = sums->bad_particle;
         total.plastic_energy += sums->plastic_energy;
         total.viscous_energy += sums->viscous_energy;
+        total.fall_backs += sums->fall_backs;
     }
     return total;
 }
@@ -103,6 +104,9 @@ enum talus_status run_take_step(struct run *run, struct talus_error *error)
     run->materials_present = sums.materials;
     run->energy.plastic += sums.plastic_energy;
     run->energy.viscous += sums.viscous_energy;
+    run->fall_backs += sums.fall_backs;
+    if (sums.fall_backs > run->fall_backs_worst)
+        run->fall_backs_worst = sums.fall_backs;
     if (run->measures)
         run_book_energy(run);
     count_crossers(run, clock);

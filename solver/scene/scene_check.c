@@ -103,6 +103,19 @@ static void check_courant(struct scene_reader *reader)
                       "%g times the critical step needs \"allow_unstable\": true", solver->courant);
 }
 
+/* What would have no effect. */
+static void check_anti_locking(struct scene_reader *reader)
+{
+    const struct talus_solver_options *solver = &reader->scene->solver;
+    struct scene_path top = {.key = "solver"};
+    struct scene_path parent = {.parent = &top, .key = "anti_locking"};
+    struct scene_path here = {.parent = &parent, .key = "field"};
+    if (solver->anti_locking == TALUS_CONTROL_NONE &&
+        solver->anti_locking_field != TALUS_FIT_VOLUMETRIC)
+        scene_mistake(reader, &here, "contradiction", NULL, NULL,
+                      "nothing is fitted with control \"none\": name a control volume");
+}
+
 /* Two boxes in the same place make twice the material there. */
 static void warn_of_overlap(struct scene_reader *reader)
 {
@@ -184,6 +197,8 @@ void scene_check(struct scene_reader *reader)
     check_bodies(reader);
     if (!scene_issues_under(reader->issues, "/solver"))
         check_courant(reader);
+    if (!scene_issues_under(reader->issues, "/solver"))
+        check_anti_locking(reader);
     if (reader->issues->count > 0)
         return;
     check_estimate(reader);

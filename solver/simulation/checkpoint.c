@@ -7,7 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { CHECKPOINT_VERSION = 4, BLOB_COUNT = 10 };
+enum { CHECKPOINT_VERSION = 5, BLOB_COUNT = 10 };
 
 struct checkpoint_header {
     uint32_t version, double_count, node_component_count, lane_count;
@@ -17,7 +17,7 @@ struct checkpoint_header {
     uint32_t row_max, over_critical_warned;
     double time, time_step, critical_time_step, last_time_step, interval, duration;
     double largest_speed, signal_speed, checked_speed, mass_cutoff;
-    uint64_t materials_present;
+    uint64_t materials_present, fall_backs, fall_backs_worst, fall_back_warned;
     struct run_energy energy;
     struct run_audit audit;
 };
@@ -58,6 +58,9 @@ static struct checkpoint_header make_header(const struct talus_simulation *simul
     header.largest_speed = run->largest_speed;
     header.signal_speed = run->signal_speed;
     header.materials_present = run->materials_present;
+    header.fall_backs = run->fall_backs;
+    header.fall_backs_worst = run->fall_backs_worst;
+    header.fall_back_warned = run->fall_back_warned;
     header.checked_speed = run->checked_speed;
     header.mass_cutoff = run->mass_cutoff;
     header.energy = run->energy;
@@ -289,6 +292,9 @@ static void restore_header(struct run *run, const struct checkpoint_header *head
     run->initial_particle_count = header->initial_particle_count;
     run->grid.row_max = header->row_max;
     run->over_critical_warned = header->over_critical_warned != 0;
+    run->fall_backs = header->fall_backs;
+    run->fall_backs_worst = header->fall_backs_worst;
+    run->fall_back_warned = header->fall_back_warned != 0;
     run->time = header->time;
     run->time_step = header->time_step;
     run->critical_time_step = header->critical_time_step;

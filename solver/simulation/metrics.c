@@ -63,6 +63,11 @@ static void add_audit(struct talus_simulation *simulation)
     add_metric(simulation, "", "energy_error", turnover > 0 ? fmax(0, -loss) / turnover : 0.0);
     add_metric(simulation, "", "energy_numerical", turnover > 0 ? loss / turnover : 0.0);
     add_metric(simulation, "", "eliminated_mass", audit->eliminated_mass);
+    if (run->scene.solver.anti_locking == TALUS_CONTROL_NONE ||
+        run->scene.solver.anti_locking_field == TALUS_FIT_VOLUMETRIC)
+        return;
+    add_metric(simulation, "anti_locking.", "fallbacks", (double)run->fall_backs);
+    add_metric(simulation, "anti_locking.", "fallbacks_worst", (double)run->fall_backs_worst);
 }
 
 const struct talus_metric *talus_simulation_metrics(struct talus_simulation *simulation,

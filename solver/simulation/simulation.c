@@ -263,6 +263,14 @@ enum talus_status talus_simulation_step(struct talus_simulation *simulation,
                         "t = %.6g s (fastest particle %.4g m/s)",
                         fixed, run->critical_time_step, run->time, run->largest_speed);
     }
+    if (run->fall_backs > 0 && !run->fall_back_warned) {
+        run->fall_back_warned = true;
+        simulation_warn(simulation, "anti_locking_fallback", "/solver/anti_locking/field",
+                        "at t = %.6g s %llu control volumes have too few or too aligned particles "
+                        "for the linear fits; there only the volumetric part is averaged (the "
+                        "metric anti_locking.fallbacks counts them over all steps)",
+                        run->time, (unsigned long long)run->fall_backs);
+    }
     return TALUS_OK;
 }
 
