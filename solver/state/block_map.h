@@ -15,10 +15,13 @@ struct block_map {
     size_t count;
 };
 
-/* Key of the block at (block x, cell y, cell z); each below 2^21. */
+/* Key of the block at (block x, cell y, cell z); any 2^21 places in a row on each axis have
+ * different keys, negative ones too. */
 static inline uint64_t block_key(int32_t x, int32_t y, int32_t z)
 {
-    return (uint64_t)(uint32_t)x | (uint64_t)(uint32_t)y << 21 | (uint64_t)(uint32_t)z << 42;
+    const uint32_t mask = (1u << 21) - 1;
+    return (uint64_t)((uint32_t)x & mask) | (uint64_t)((uint32_t)y & mask) << 21 |
+           (uint64_t)((uint32_t)z & mask) << 42;
 }
 
 void block_map_release(struct block_map *map);

@@ -44,7 +44,10 @@ struct particle_block {
     uint32_t *id;   /* [row_capacity * LANE_COUNT], inside the chunk */
     uint16_t *body; /* the same, or NULL */
     uint32_t nodes[BLOCK_NODE_NEIGHBOURS]; /* node blocks at (x + bit 0, y + bit 1, z + bit 2) */
-    bool constrained;                      /* a node of it has a boundary condition */
+    uint32_t *wide_nodes; /* node blocks of the neighbourhood (state/wide_window.h), or NULL; owned
+                             by the grid */
+    uint8_t folds[6];     /* per side (2 axis + upper): bit l, cell l has a wall there */
+    bool constrained;     /* a node of it has a boundary condition */
     bool eliminates; /* it reaches behind a boundary that eliminates particles */
     bool packed;     /* the chunk lies in the grid's slab, which owns it */
 };

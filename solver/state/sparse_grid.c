@@ -1,15 +1,23 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 #include "state/sparse_grid.h"
+#include "state/wide_window.h"
 
 #include <assert.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/mman.h>
 
+static void drop_block(struct particle_block *block)
+{
+    particle_block_release(block);
+    free(block->wide_nodes);
+    block->wide_nodes = NULL;
+}
+
 void sparse_grid_release(struct sparse_grid *grid)
 {
     for (size_t index = 0; index < grid->block_count; index++)
-        particle_block_release(&grid->blocks[index]);
+        drop_block(&grid->blocks[index]);
     free(grid->blocks);
     free(grid->slab);
     free(grid->tiles);
@@ -17,6 +25,33 @@ void sparse_grid_release(struct sparse_grid *grid)
     block_map_release(&grid->map);
     node_blocks_release(&grid->nodes);
     memset(grid, 0, sizeof *grid);
+}
+
+static size_t wide_node_count(const struct sparse_grid *grid)
+{
+    return (size_t)3 * window_row_count(grid->domain.axis_count, grid->reach);
+}
+
+static int connect_wide_nodes(struct sparse_grid *grid, struct particle_block *block)
+{
+    const size_t count = wide_node_count(grid);
+    const int32_t reach = (int32_t)grid->reach, rows = 2 * reach + 2;
+    const size_t axes = grid->domain.axis_count;
+    if (block->wide_nodes == NULL)
+        block->wide_nodes = malloc(count * sizeof *block->wide_nodes);
+    if (block->wide_nodes == NULL)
+        return -1;
+    for (size_t index = 0; index < count; index++) {
+        const int32_t row = (int32_t)(index / 3);
+        const uint32_t nodes = node_blocks_require(
+            &grid->nodes, block->cell[0] + ((int32_t)(index % 3) - 1) * LANE_COUNT,
+            block->cell[1] + (axes > 1 ? row % rows - reach : 0),
+            block->cell[2] + (axes > 2 ? row / rows - reach : 0));
+        if (nodes == BLOCK_NONE)
+            return -1;
+        block->wide_nodes[index] = nodes;
+    }
+    return 0;
 }
 
 static int connect_nodes(struct sparse_grid *grid, struct particle_block *block)
@@ -29,7 +64,7 @@ static int connect_nodes(struct sparse_grid *grid, struct particle_block *block)
             return -1;
         block->nodes[corner] = nodes;
     }
-    return 0;
+    return grid->reach == 0 ? 0 : connect_wide_nodes(grid, block);
 }
 
 uint32_t sparse_grid_find_block(const struct sparse_grid *grid, const int32_t cell[3])
@@ -57,8 +92,10 @@ uint32_t sparse_grid_require_block(struct sparse_grid *grid, const int32_t cell[
     block->cell[1] = cell[1];
     block->cell[2] = cell[2];
     if (connect_nodes(grid, block) != 0 ||
-        block_map_insert(&grid->map, key, (uint32_t)grid->block_count) != 0)
+        block_map_insert(&grid->map, key, (uint32_t)grid->block_count) != 0) {
+        drop_block(block);
         return BLOCK_NONE;
+    }
     grid->tiles_stale = true;
     return (uint32_t)grid->block_count++;
 }
@@ -67,10 +104,19 @@ struct tile_key {
     uint32_t colour, x, y, block;
 };
 
+/* Tiles are `scale` blocks wide and scale x TILE_ROWS cells high. A block touches the node blocks
+ * beside it and `reach` rows more, and two tiles of a colour have one tile between them. */
+static int32_t tile_scale(const struct sparse_grid *grid)
+{
+    _Static_assert(2 * TILE_ROWS > 2 * REACH_MAX, "tiles of one colour would share nodes");
+    return grid->reach > 0 ? 2 : 1;
+}
+
 static struct tile_key tile_key_of(const struct sparse_grid *grid, size_t index)
 {
-    const uint32_t x = (uint32_t)grid->blocks[index].cell[0] / LANE_COUNT;
-    const uint32_t y = (uint32_t)grid->blocks[index].cell[1] / TILE_ROWS;
+    const uint32_t scale = (uint32_t)tile_scale(grid);
+    const uint32_t x = (uint32_t)grid->blocks[index].cell[0] / (LANE_COUNT * scale);
+    const uint32_t y = (uint32_t)grid->blocks[index].cell[1] / (TILE_ROWS * scale);
     return (struct tile_key){(x & 1) | (y & 1) << 1, x, y, (uint32_t)index};
 }
 
@@ -87,20 +133,38 @@ static int compare_tile_keys(const void *left, const void *right)
 }
 
 /* By tile, and inside of a tile layer by layer. */
-static int compare_blocks(const void *left, const void *right)
+static int compare_blocks(const struct particle_block *a, const struct particle_block *b,
+                          int32_t scale)
 {
-    const struct particle_block *a = left, *b = right;
-    const int32_t a_tile[2] = {a->cell[0] / LANE_COUNT, a->cell[1] / TILE_ROWS};
-    const int32_t b_tile[2] = {b->cell[0] / LANE_COUNT, b->cell[1] / TILE_ROWS};
-    const int32_t a_key[] = {(a_tile[0] & 1) | (a_tile[1] & 1) << 1, a_tile[1], a_tile[0],
-                             a->cell[2], a->cell[1]};
-    const int32_t b_key[] = {(b_tile[0] & 1) | (b_tile[1] & 1) << 1, b_tile[1], b_tile[0],
-                             b->cell[2], b->cell[1]};
+    const int32_t a_tile[2] = {a->cell[0] / (LANE_COUNT * scale), a->cell[1] / (TILE_ROWS * scale)};
+    const int32_t b_tile[2] = {b->cell[0] / (LANE_COUNT * scale), b->cell[1] / (TILE_ROWS * scale)};
+    const int32_t a_key[] = {(a_tile[0] & 1) | (a_tile[1] & 1) << 1,
+                             a_tile[1],
+                             a_tile[0],
+                             a->cell[2],
+                             a->cell[1],
+                             a->cell[0]};
+    const int32_t b_key[] = {(b_tile[0] & 1) | (b_tile[1] & 1) << 1,
+                             b_tile[1],
+                             b_tile[0],
+                             b->cell[2],
+                             b->cell[1],
+                             b->cell[0]};
     for (size_t index = 0; index < sizeof a_key / sizeof a_key[0]; index++) {
         if (a_key[index] != b_key[index])
             return a_key[index] < b_key[index] ? -1 : 1;
     }
     return 0;
+}
+
+static int compare_narrow(const void *left, const void *right)
+{
+    return compare_blocks(left, right, 1);
+}
+
+static int compare_wide(const void *left, const void *right)
+{
+    return compare_blocks(left, right, 2);
 }
 
 static int reserve_tiles(struct sparse_grid *grid)
@@ -186,7 +250,7 @@ static void drop_empty_blocks(struct sparse_grid *grid)
     size_t kept = 0;
     for (size_t index = 0; index < grid->block_count; index++) {
         if (is_empty(&grid->blocks[index]))
-            particle_block_release(&grid->blocks[index]);
+            drop_block(&grid->blocks[index]);
         else
             grid->blocks[kept++] = grid->blocks[index];
     }
@@ -214,7 +278,8 @@ int sparse_grid_purge(struct sparse_grid *grid)
     grid->nodes.layout = old.layout;
     block_map_clear(&grid->map);
     drop_empty_blocks(grid);
-    qsort(grid->blocks, grid->block_count, sizeof *grid->blocks, compare_blocks);
+    qsort(grid->blocks, grid->block_count, sizeof *grid->blocks,
+          tile_scale(grid) == 1 ? compare_narrow : compare_wide);
     const int status = reconnect_blocks(grid);
     for (size_t index = 0; index < grid->nodes.count; index++) {
         const int32_t *place = grid->nodes.place[index];
@@ -298,7 +363,8 @@ size_t sparse_grid_memory(const struct sparse_grid *grid)
         grid->nodes.capacity * (grid->nodes.layout.component_count * LANE_COUNT * sizeof(real) +
                                 sizeof *grid->nodes.place) +
         (grid->map.capacity + grid->nodes.map.capacity) * 12 +
-        grid->tile_block_capacity * (sizeof *grid->tiles + sizeof *grid->tile_blocks);
+        grid->tile_block_capacity * (sizeof *grid->tiles + sizeof *grid->tile_blocks) +
+        (grid->reach > 0 ? grid->block_count * wide_node_count(grid) * sizeof(uint32_t) : 0);
     for (size_t index = 0; index < grid->block_count; index++) {
         if (!grid->blocks[index].packed)
             bytes += particle_chunk_bytes(&grid->layout, grid->blocks[index].row_capacity);

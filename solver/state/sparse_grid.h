@@ -5,7 +5,10 @@
  * Tiles: blocks are grouped into tiles one block wide in x and TILE_ROWS cells in y (all of z),
  * with four colours. Tiles of one colour share no node block, so they scatter at the same time
  * without atomics; within a tile and between colours the order is fixed. Hence every node receives
- * its contributions in the same order for any number of threads. */
+ * its contributions in the same order for any number of threads.
+ *
+ * Shape functions with a `reach` touch the nodes of that many cells more on every side: then tiles
+ * are twice as wide and high, and node blocks may lie that far outside of the domain. */
 #ifndef TALUS_SPARSE_GRID_H
 #define TALUS_SPARSE_GRID_H
 
@@ -15,7 +18,7 @@
 
 #include <stdbool.h>
 
-enum { TILE_ROWS = 4, TILE_COLOURS = 4 };
+enum { TILE_ROWS = 4, TILE_COLOURS = 4, REACH_MAX = 2 };
 
 struct tile {
     size_t begin, end;   /* into tile_blocks */
@@ -26,6 +29,7 @@ struct tile {
 struct sparse_grid {
     struct domain domain;
     struct particle_layout layout;
+    uint32_t reach; /* cells, at most REACH_MAX; set before the first block is made */
     struct particle_block *blocks; /* [block_count] owned */
     size_t block_count, block_capacity;
     struct block_map map;
