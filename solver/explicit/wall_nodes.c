@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Which nodes have walls, and which blocks touch them. */
 #include "explicit/node_passes.h"
+#include "state/wide_window.h"
 
 #include <assert.h>
 #include <stdlib.h>
@@ -39,12 +40,31 @@ static int append_wall_nodes(struct run *run, size_t block)
     return 0;
 }
 
+/* Which sides of its cells are walls. */
+static void find_folds(const struct run *run, struct particle_block *block)
+{
+    memset(block->folds, 0, sizeof block->folds);
+    for (int lane = 0; lane < LANE_COUNT; lane++) {
+        const int32_t cell[3] = {block->cell[0] + lane, block->cell[1], block->cell[2]};
+        const unsigned folds = wall_set_cell_folds(&run->walls, &run->grid.domain, cell);
+        for (size_t side = 0; side < sizeof block->folds; side++)
+            block->folds[side] |= (uint8_t)((folds >> side & 1) << lane);
+    }
+}
+
 static void mark_block(struct run *run, struct particle_block *block)
 {
     const struct domain *domain = &run->grid.domain;
+    const uint32_t *nodes = block->nodes;
+    size_t count = (size_t)1 << domain->axis_count;
+    if (run->grid.reach > 0) {
+        nodes = block->wide_nodes;
+        count = (size_t)3 * window_row_count(domain->axis_count, run->grid.reach);
+        find_folds(run, block);
+    }
     block->constrained = false;
-    for (int corner = 0; corner < 1 << domain->axis_count; corner++)
-        block->constrained = block->constrained || run->block_walled[block->nodes[corner]];
+    for (size_t index = 0; index < count; index++)
+        block->constrained = block->constrained || run->block_walled[nodes[index]];
     double low[3] = {0, 0, 0}, high[3] = {0, 0, 0};
     for (size_t axis = 0; axis < domain->axis_count; axis++) {
         /* One cell more on each side: a particle is tested after it has moved. */

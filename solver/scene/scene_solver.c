@@ -12,8 +12,8 @@ static const char *const shape_words[] = {
 #undef SHAPE
     NULL,
 };
-static const char *const shape_lacking[] = {"gimp",     "gimp_scaled", "cpdi",      "cpdi_hybrid",
-                                            "bspline2", "bspline3",    "quadratic", NULL};
+static const char *const shape_lacking[] = {"gimp",        "gimp_scaled", "cpdi",
+                                            "cpdi_hybrid", "quadratic",   NULL};
 static const char *const transfer_words[] = {"flip", NULL};
 static const char *const transfer_lacking[] = {"pic", "apic", NULL};
 static const char *const stress_words[] = {"modified_last", "last", NULL};

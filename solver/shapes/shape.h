@@ -1,9 +1,10 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* The seam for shape functions: one file per shape, one line in shapes.def.
  *
- * Kernels work on one block at a time and are instantiated per dimension. They turn node values
- * into polynomial coefficients local to the cells once per block, and accumulate moments that are
- * expanded to nodes once per block. */
+ * Kernels work on one block at a time and are instantiated per dimension. Linear ones turn node
+ * values into polynomial coefficients local to the cells once per block, and accumulate moments
+ * that are expanded to nodes once per block (linear_kernel.h); those of shapes that reach further
+ * sum over a window of nodes (wide_kernel.h). */
 #ifndef TALUS_SHAPE_H
 #define TALUS_SHAPE_H
 
@@ -85,6 +86,8 @@ struct shape {
     /* Largest stable Courant number c dt / h with full cells, per stress ordering (index: enum
      * talus_stress_update); the smallest over the dimensions and particle arrangements known. */
     double courant_limit[2];
+    /* Cells beyond its own that a particle can reach, at most REACH_MAX (state/sparse_grid.h). */
+    uint32_t reach;
     const struct shape_kernels *kernels[3]; /* per dimension: 1, 2, 3 axes */
 };
 

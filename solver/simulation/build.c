@@ -220,6 +220,7 @@ enum talus_status run_build(struct run *run, const struct talus_scene *scene,
                      scene->solver.stress_update == TALUS_STRESS_LAST);
     run_set_callbacks(run, options);
     run->shape = shape_table[scene->solver.shape_index];
+    run->grid.reach = run->shape->reach;
     run->kernels = run->shape->kernels[scene->axis_count - 1];
     run->scatters = SCATTER_MASS | SCATTER_FORCE;
     if (scene->solver.stress_update == TALUS_STRESS_LAST)

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Bytes that a simulation holds, and what they will be. */
 #include "simulation/simulation_private.h"
+#include "state/wide_window.h"
 
 #include <math.h>
 
@@ -40,6 +41,18 @@ static double doubled(double first, double count)
     return first;
 }
 
+/* Node blocks of a body of so many blocks, `width` cells wide if it is a cube. */
+static double node_blocks_estimate(const struct run *run, double blocks, double width)
+{
+    const double axes = (double)run->scene.axis_count, reach = run->grid.reach;
+    /* A body of few blocks has a layer of nodes more on its upper sides. */
+    if (run->grid.reach == 0)
+        return blocks * pow(1 + 1 / width, axes) + 2 * pow(width, axes - 1);
+    /* More layers on all sides, which a flat body feels twice as much. */
+    const double layers = 1 + 2 * reach;
+    return blocks * pow(1 + 2 * layers / width, axes - 1) + 3 * pow(width + layers, axes - 1);
+}
+
 double simulation_memory_estimate(const struct run *run, size_t number, double particles,
                                   double cells)
 {
@@ -50,10 +63,13 @@ double simulation_memory_estimate(const struct run *run, size_t number, double p
                                   sizeof *run->grid.nodes.place;
     const double axes = (double)run->scene.axis_count;
     const double rows = cells > 0 ? particles / cells : 0;
-    /* A body of few blocks has a layer of nodes more on its upper sides. */
     const double width = pow(fmax(cells, 1), 1 / axes);
     const double blocks = cells / lanes_of_block * (1 + lanes_of_block / width);
-    const double nodes = blocks * pow(1 + 1 / width, axes) + 2 * pow(width, axes - 1);
+    const double nodes = node_blocks_estimate(run, blocks, width);
+    const double neighbours =
+        run->grid.reach == 0
+            ? 0
+            : 3 * sizeof(uint32_t) * window_row_count(run->scene.axis_count, run->grid.reach);
     /* Every cell of a block has room for as many particles as the fullest, an even number. */
     const double slab = per_particle * blocks * lanes_of_block * (rows + 1);
     /* With the slack of block_scratch_reserve. */
@@ -61,5 +77,6 @@ double simulation_memory_estimate(const struct run *run, size_t number, double p
         (double)block_scratch_bytes(1, number) * (1.5 * (rows + 1) * lanes_of_block + 24);
     return ceil(slab / SLAB_STEP) * SLAB_STEP + particles * sizeof *run->outbox +
            doubled(64, blocks) * (sizeof *run->grid.blocks + sizeof *run->grid.tiles + 60) +
-           doubled(256, nodes) * (per_node_block + 36) + scratch + sizeof(struct talus_simulation);
+           blocks * neighbours + doubled(256, nodes) * (per_node_block + 36) + scratch +
+           sizeof(struct talus_simulation);
 }

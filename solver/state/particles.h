@@ -48,8 +48,8 @@ struct particle_block {
                              by the grid */
     uint8_t folds[6];     /* per side (2 axis + upper): bit l, cell l has a wall there */
     bool constrained;     /* a node of it has a boundary condition */
-    bool eliminates; /* it reaches behind a boundary that eliminates particles */
-    bool packed;     /* the chunk lies in the grid's slab, which owns it */
+    bool eliminates;      /* it reaches behind a boundary that eliminates particles */
+    bool packed;          /* the chunk lies in the grid's slab, which owns it */
 };
 
 /* All values of one particle, outside of any block. */

@@ -3,8 +3,9 @@
  *
  * A window holds one component of all nodes that the particles of a block can touch as dense rows
  * along x: [rows along y and z][WINDOW_WIDTH]. The node at (x, y, z) from the first node of the
- * block lies in row y + reach + (2 reach + 2) (z + reach), column WINDOW_ORIGIN + x, so the nodes at
- * one offset from all cells of the block are one contiguous vector. */
+ * block lies in row y + reach + (2 reach + 2) (z + reach), column WINDOW_ORIGIN + x, so the nodes
+ * at one offset from all cells of the block are one contiguous vector. Block wide_nodes[3 row +
+ * part] holds LANE_COUNT columns of a row. */
 #ifndef TALUS_WIDE_WINDOW_H
 #define TALUS_WIDE_WINDOW_H
 
@@ -39,11 +40,15 @@ static inline void window_add(const struct node_blocks *nodes, const struct part
     }
 }
 
-/* Index into the values of a component's window of the node at (x, y, z) from the first node. */
-static inline size_t window_index(uint32_t reach, int32_t x, int32_t y, int32_t z)
+/* Place in a window of the node at (x, y, z) from the first node of the block; axes beyond the
+ * dimension are ignored. */
+static inline size_t window_index(size_t axis_count, uint32_t reach, int32_t x, int32_t y,
+                                  int32_t z)
 {
-    const int32_t rows = 2 * (int32_t)reach + 2, shift = (int32_t)reach;
-    return (size_t)(((z + shift) * rows + y + shift) * WINDOW_WIDTH + WINDOW_ORIGIN + x);
+    const int32_t rows = 2 * (int32_t)reach + 2;
+    const int32_t row = (axis_count > 1 ? y + (int32_t)reach : 0) +
+                        (axis_count > 2 ? rows * (z + (int32_t)reach) : 0);
+    return (size_t)(row * WINDOW_WIDTH + WINDOW_ORIGIN + x);
 }
 
 #endif

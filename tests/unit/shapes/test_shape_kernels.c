@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Every shape of the table, in one to three axes: partition of unity, linear reproduction, gradient
- * sums, and that gathering is the transpose of scattering. */
+/* Every shape of the table, in one to three axes, without and with walls at the sides of cells:
+ * partition of unity, linear reproduction, gradient sums, and that gathering is the transpose of
+ * scattering. */
 #include "shapes/shape.h"
 #include "simulation_fixture.h"
 #include "state/sparse_grid.h"
@@ -32,13 +33,15 @@ static real *values(struct bench *bench, enum particle_field field, size_t compo
 }
 
 /* One block with particles at random places, on cell faces and in corners; lane 2 has fewer. */
-static void bench_init(struct bench *bench, const struct shape *shape, size_t axes)
+static void bench_init(struct bench *bench, const struct shape *shape, size_t axes, bool walled)
 {
     static const double edges[3] = {-0.5, 0.5, 0.0};
+    static const uint8_t walls[6] = {0x1, 0x4, 0xA, 0x6, 0x3, 0xF}; /* all pairs of sides */
     uint64_t random = 17 + axes;
     memset(bench, 0, sizeof *bench);
     struct sparse_grid *grid = &bench->grid;
     bench->axes = grid->domain.axis_count = axes;
+    grid->reach = shape->reach;
     grid->layout.component_count[PARTICLE_POSITION] = (uint32_t)axes;
     grid->layout.component_count[PARTICLE_VELOCITY] = (uint32_t)axes;
     grid->layout.component_count[PARTICLE_MASS] = 1;
@@ -60,6 +63,8 @@ static void bench_init(struct bench *bench, const struct shape *shape, size_t ax
         bench->block = sparse_grid_insert(grid, cell, &record, &slot);
         assert_int_not_equal(bench->block, BLOCK_NONE);
     }
+    for (size_t side = 0; walled && side < 2 * axes; side++)
+        bench_block(bench)->folds[side] = walls[side];
     bench->count = (size_t)grid->blocks[bench->block].row_count * LANE_COUNT;
     assert_int_equal(block_scratch_reserve(&bench->scratch, bench->count), 0);
     bench->context = shape_context_make(&grid->layout, &grid->nodes, cell_width, TIME_STEP);
@@ -294,9 +299,9 @@ static void test_shapes(void **state)
 {
     (void)state;
     for (size_t shape = 0; shape < shape_count; shape++) {
-        for (size_t axes = 1; axes <= 3; axes++) {
+        for (size_t turn = 0; turn < 6; turn++) {
             struct bench bench;
-            bench_init(&bench, shape_table[shape], axes);
+            bench_init(&bench, shape_table[shape], 1 + turn / 2, turn % 2 != 0);
             check_linear_reproduction(&bench);
             fill_scratch(&bench);
             clear_nodes(&bench);

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* The same bits for any number of threads, and whether or not anybody looks. */
+#include "shapes/shape.h"
 #include "simulation_fixture.h"
 
 /* A heap over many tiles that slides and falls apart. */
@@ -17,6 +18,26 @@ static void build(struct simulation_fixture *fixture, const struct material *mat
     fixture->scene.solver.anti_locking = TALUS_CONTROL_CELL;
 }
 
+static void compare_threads(const struct simulation_fixture *fixture)
+{
+    struct talus_simulation *one = simulation_fixture_start(fixture, 1);
+    struct talus_simulation *two = simulation_fixture_start(fixture, 2);
+    assert_true(talus_simulation_state_hash(one) == talus_simulation_state_hash(two));
+    for (size_t turn = 0; turn < 2; turn++) {
+        const uint64_t before = talus_simulation_state_hash(one);
+        simulation_run_steps(one, 15);
+        simulation_run_steps(two, 15);
+        assert_true(talus_simulation_state_hash(one) != before);
+        assert_true(talus_simulation_state_hash(one) == talus_simulation_state_hash(two));
+    }
+    assert_true(simulation_metric(one, "energy_numerical") ==
+                simulation_metric(two, "energy_numerical"));
+    assert_true(simulation_metric(one, "reaction.floor.peak") ==
+                simulation_metric(two, "reaction.floor.peak"));
+    talus_simulation_destroy(one);
+    talus_simulation_destroy(two);
+}
+
 static void test_one_and_two_threads(void **state)
 {
     (void)state;
@@ -28,22 +49,22 @@ static void test_one_and_two_threads(void **state)
                 fixture.scene.solver.stress_update = TALUS_STRESS_LAST;
                 fixture.bodies[0].velocity[0] = 0;
             }
-            struct talus_simulation *one = simulation_fixture_start(&fixture, 1);
-            struct talus_simulation *two = simulation_fixture_start(&fixture, 2);
-            assert_true(talus_simulation_state_hash(one) == talus_simulation_state_hash(two));
-            for (size_t turn = 0; turn < 2; turn++) {
-                const uint64_t before = talus_simulation_state_hash(one);
-                simulation_run_steps(one, 15);
-                simulation_run_steps(two, 15);
-                assert_true(talus_simulation_state_hash(one) != before);
-                assert_true(talus_simulation_state_hash(one) == talus_simulation_state_hash(two));
-            }
-            assert_true(simulation_metric(one, "energy_numerical") ==
-                        simulation_metric(two, "energy_numerical"));
-            assert_true(simulation_metric(one, "reaction.floor.peak") ==
-                        simulation_metric(two, "reaction.floor.peak"));
-            talus_simulation_destroy(one);
-            talus_simulation_destroy(two);
+            compare_threads(&fixture);
+        }
+    }
+}
+
+static void test_one_and_two_threads_of_every_shape(void **state)
+{
+    (void)state;
+    for (size_t shape = 0; shape < shape_count; shape++) {
+        for (size_t axes = 1; axes <= 3; axes++) {
+            struct simulation_fixture fixture;
+            build(&fixture, material_find("linear_elastic"), axes);
+            fixture.scene.solver.shape_index = shape;
+            compare_threads(&fixture);
+            fixture.scene.solver.stress_update = TALUS_STRESS_LAST;
+            compare_threads(&fixture);
         }
     }
 }
@@ -98,6 +119,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_one_and_two_threads),
+        cmocka_unit_test(test_one_and_two_threads_of_every_shape),
         cmocka_unit_test(test_looking_changes_nothing),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

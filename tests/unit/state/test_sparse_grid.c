@@ -2,11 +2,13 @@
 /* Blocks appear where material is, tiles of a colour are apart, purging keeps what lives. */
 #include "simulation_fixture.h"
 #include "state/sparse_grid.h"
+#include "state/wide_window.h"
 
-static void grid_init(struct sparse_grid *grid, size_t axis_count)
+static void grid_init(struct sparse_grid *grid, size_t axis_count, uint32_t reach)
 {
     memset(grid, 0, sizeof *grid);
     grid->domain.axis_count = axis_count;
+    grid->reach = reach;
     grid->layout.component_count[PARTICLE_POSITION] = (uint32_t)axis_count;
     grid->layout.component_count[PARTICLE_VELOCITY] = (uint32_t)axis_count;
     grid->layout.component_count[PARTICLE_MASS] = 1;
@@ -30,7 +32,7 @@ static void test_blocks_know_their_nodes(void **state)
 {
     (void)state;
     struct sparse_grid grid;
-    grid_init(&grid, 3);
+    grid_init(&grid, 3, 0);
     const int32_t first = LANE_COUNT;
     const uint32_t a = place(&grid, first + 2, 2, 3, 0);
     const uint32_t b = place(&grid, 2 * first + 1, 2, 3, 1);
@@ -64,15 +66,26 @@ static void strew(struct sparse_grid *grid, size_t count, uint64_t seed)
     }
 }
 
+/* Node blocks that a block touches. */
+static size_t touched_nodes(const struct sparse_grid *grid, const struct particle_block *block,
+                            const uint32_t **nodes)
+{
+    *nodes = grid->reach > 0 ? block->wide_nodes : block->nodes;
+    return grid->reach > 0 ? (size_t)3 * window_row_count(grid->domain.axis_count, grid->reach)
+                           : (size_t)1 << grid->domain.axis_count;
+}
+
 static bool share_nodes(const struct sparse_grid *grid, const struct tile *a, const struct tile *b)
 {
-    const size_t corners = (size_t)1 << grid->domain.axis_count;
+    const uint32_t *left = NULL, *right = NULL;
     for (size_t i = a->begin; i < a->end; i++) {
+        const size_t left_count = touched_nodes(grid, &grid->blocks[grid->tile_blocks[i]], &left);
         for (size_t j = b->begin; j < b->end; j++) {
-            for (size_t m = 0; m < corners; m++) {
-                for (size_t n = 0; n < corners; n++) {
-                    if (grid->blocks[grid->tile_blocks[i]].nodes[m] ==
-                        grid->blocks[grid->tile_blocks[j]].nodes[n])
+            const size_t right_count =
+                touched_nodes(grid, &grid->blocks[grid->tile_blocks[j]], &right);
+            for (size_t m = 0; m < left_count; m++) {
+                for (size_t n = 0; n < right_count; n++) {
+                    if (left[m] == right[n])
                         return true;
                 }
             }
@@ -81,12 +94,11 @@ static bool share_nodes(const struct sparse_grid *grid, const struct tile *a, co
     return false;
 }
 
-static void test_tiles_of_one_colour_share_no_node_block(void **state)
+static void tiles_of_one_colour_share_no_node_block(uint32_t reach)
 {
-    (void)state;
     for (size_t axis_count = 1; axis_count <= 3; axis_count++) {
         struct sparse_grid grid;
-        grid_init(&grid, axis_count);
+        grid_init(&grid, axis_count, reach);
         strew(&grid, 400, axis_count);
         assert_int_equal(sparse_grid_update_tiles(&grid), 0);
         assert_false(grid.tiles_stale);
@@ -118,6 +130,82 @@ static void test_tiles_of_one_colour_share_no_node_block(void **state)
     }
 }
 
+static void test_tiles_of_one_colour_share_no_node_block(void **state)
+{
+    (void)state;
+    for (uint32_t reach = 0; reach <= REACH_MAX; reach++)
+        tiles_of_one_colour_share_no_node_block(reach);
+}
+
+/* In the corner of the domain too, where nodes lie outside; before and after blocks were sorted. */
+static void check_neighbourhood(const struct sparse_grid *grid)
+{
+    const size_t axes = grid->domain.axis_count;
+    const int32_t reach = (int32_t)grid->reach;
+    for (size_t index = 0; index < grid->block_count; index++) {
+        const struct particle_block *block = &grid->blocks[index];
+        for (int32_t z = axes > 2 ? -reach : 0; z <= (axes > 2 ? reach + 1 : 0); z++) {
+            for (int32_t y = axes > 1 ? -reach : 0; y <= (axes > 1 ? reach + 1 : 0); y++) {
+                for (int32_t x = -reach; x <= LANE_COUNT + reach; x++) {
+                    const size_t place = window_index(axes, grid->reach, x, y, z);
+                    const uint32_t nodes = block->wide_nodes[place / LANE_COUNT];
+                    assert_int_equal(grid->nodes.place[nodes][0] + (int32_t)(place % LANE_COUNT),
+                                     block->cell[0] + x);
+                    assert_int_equal(grid->nodes.place[nodes][1], block->cell[1] + y);
+                    assert_int_equal(grid->nodes.place[nodes][2], block->cell[2] + z);
+                }
+            }
+        }
+    }
+}
+
+static void test_wide_blocks_know_their_neighbourhood(void **state)
+{
+    (void)state;
+    for (size_t axes = 1; axes <= 3; axes++) {
+        for (uint32_t reach = 1; reach <= REACH_MAX; reach++) {
+            struct sparse_grid grid;
+            grid_init(&grid, axes, reach);
+            (void)place(&grid, 0, 0, 0, 0);
+            strew(&grid, 50, axes);
+            check_neighbourhood(&grid);
+            assert_int_equal(sparse_grid_purge(&grid), 0);
+            check_neighbourhood(&grid);
+            sparse_grid_release(&grid);
+        }
+    }
+}
+
+/* What a window holds is what the nodes hold, and what is added to it arrives there. */
+static void test_windows_show_the_nodes(void **state)
+{
+    (void)state;
+    enum { REACH = 2, AXES = 2 };
+    _Alignas(64) real window[(2 * REACH + 2) * WINDOW_WIDTH];
+    struct sparse_grid grid;
+    grid_init(&grid, AXES, REACH);
+    const uint32_t index = place(&grid, 1, 0, 0, 0);
+    const struct particle_block *block = &grid.blocks[index];
+    const uint32_t rows = window_row_count(AXES, REACH), component = grid.nodes.layout.mass;
+    for (size_t nodes = 0; nodes < grid.nodes.count; nodes++) {
+        for (int32_t lane = 0; lane < LANE_COUNT; lane++)
+            node_values(&grid.nodes, nodes, component)[lane] =
+                (real)(grid.nodes.place[nodes][0] + lane + 100 * grid.nodes.place[nodes][1]);
+    }
+    window_load(&grid.nodes, block, rows, component, window);
+    for (int32_t y = -REACH; y <= REACH + 1; y++) {
+        for (int32_t x = -REACH; x <= LANE_COUNT + REACH; x++)
+            assert_true(window[window_index(AXES, REACH, x, y, 0)] == (real)(x + 100 * y));
+    }
+    window_add(&grid.nodes, block, rows, component, window);
+    for (size_t nodes = 0; nodes < grid.nodes.count; nodes++) {
+        const real expected =
+            (real)(2 * (grid.nodes.place[nodes][0] + 100 * grid.nodes.place[nodes][1]));
+        assert_true(node_values(&grid.nodes, nodes, component)[0] == expected);
+    }
+    sparse_grid_release(&grid);
+}
+
 static uint32_t find_block(const struct sparse_grid *grid, const int32_t cell[3])
 {
     return block_map_find(&grid->map, block_key(cell[0] / LANE_COUNT, cell[1], cell[2]));
@@ -127,7 +215,7 @@ static void test_purge_keeps_what_lives(void **state)
 {
     (void)state;
     struct sparse_grid grid;
-    grid_init(&grid, 2);
+    grid_init(&grid, 2, 0);
     strew(&grid, 200, 5);
     const uint32_t component = grid.nodes.layout.mass;
     for (size_t block = 0; block < grid.nodes.count; block++)
@@ -179,6 +267,8 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_blocks_know_their_nodes),
         cmocka_unit_test(test_tiles_of_one_colour_share_no_node_block),
+        cmocka_unit_test(test_wide_blocks_know_their_neighbourhood),
+        cmocka_unit_test(test_windows_show_the_nodes),
         cmocka_unit_test(test_purge_keeps_what_lives),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
