@@ -77,7 +77,13 @@ struct talus_material {
                        in; NAN = not given and without default; choices as index, booleans 0/1 */
 };
 
-enum talus_body_shape { TALUS_BODY_BOX, TALUS_BODY_SPHERE, TALUS_BODY_CYLINDER };
+enum talus_body_shape {
+    TALUS_BODY_BOX,
+    TALUS_BODY_SPHERE,
+    TALUS_BODY_CYLINDER,
+    TALUS_BODY_POLYGON,
+    TALUS_BODY_POINTS
+};
 enum talus_lattice { TALUS_LATTICE_PER_CELL, TALUS_LATTICE_SPACING, TALUS_LATTICE_COUNT };
 enum talus_initial_stress {
     TALUS_INITIAL_NONE,
@@ -97,9 +103,19 @@ struct talus_body {
     size_t material_index;
     enum talus_body_shape shape;
     double box_min[3], box_max[3];
-    double centre[3], radius;        /* sphere (a disc in 2D); radius also of the cylinder */
-    double from[3], to[3];           /* cylinder axis */
-    double clip_min[3], clip_max[3]; /* -INFINITY/INFINITY: open */
+    double centre[3], radius; /* sphere (a disc in 2D); radius also of the cylinder */
+    double from[3], to[3];    /* cylinder axis */
+    size_t vertex_count;      /* polygon (2D): 3 or more */
+    double *vertices;         /* [vertex_count][2] m, either way round, no side crosses
+                                 another */
+    size_t point_count;       /* points: the particles themselves, without a lattice */
+    double *point_positions;  /* [point_count][3] m */
+    double *point_volumes;    /* [point_count] m^3, m^2 x 1 m, m x 1 m^2 */
+    double rotate_angle_deg;  /* all of the above, clip and lattice included, is turned by
+                                 this angle ... */
+    double rotate_about[3], rotate_axis[3]; /* ... about this point [m] and unit axis (in 2D z:
+                                               counterclockwise) */
+    double clip_min[3], clip_max[3];        /* -INFINITY/INFINITY: open */
     enum talus_lattice lattice;
     double lattice_value[3]; /* particles per cell, spacing [m] or count, per axis */
     enum talus_velocity_field velocity_field; /* at the start */

@@ -119,6 +119,8 @@ void scene_advise_particles(struct scene_advice *advice)
         const struct talus_body *body = &scene->bodies[index];
         struct seeding_lattice lattice;
         double least = INFINITY;
+        if (body->shape == TALUS_BODY_POINTS)
+            continue;
         seeding_lattice_init(&lattice, scene, body);
         for (size_t k = 0; k < scene->axis_count; k++) {
             /* A body thinner than a cell has all its particles in it. */

@@ -59,8 +59,8 @@ static const struct scene_field clip_fields[] = {
 #define LATTICE(NAME, UNIT, MINIMUM, ABOVE, WHOLE, MEANING)                                        \
     {                                                                                              \
         .key = NAME, .kind = SCENE_VECTOR, .unit = UNIT, .minimum = MINIMUM, .maximum = 1e9,       \
-        .above_minimum = ABOVE, .required = true, .default_value = NAN, .alternative = "lattice",  \
-        .whole = WHOLE, .scalar = true, .offset = AT(lattice_value), .meaning = MEANING            \
+        .above_minimum = ABOVE, .default_value = NAN, .alternative = "lattice", .whole = WHOLE,    \
+        .scalar = true, .offset = AT(lattice_value), .meaning = MEANING                            \
     }
 
 static void read_material(struct scene_reader *reader, const struct scene_path *path,
@@ -94,14 +94,19 @@ const struct scene_field scene_body_fields[] = {
     SHAPE("box", box_fields, "box with sides along the axes"),
     SHAPE("sphere", sphere_fields, "sphere; a disc in 2D"),
     SHAPE("cylinder", cylinder_fields, "cylinder in 3D"),
-    {.key = "polygon", .alternative = "shape", .unsupported = true},
-    {.key = "points", .alternative = "shape", .unsupported = true},
+    SHAPE("polygon", scene_polygon_fields, "polygon in 2D, convex or not"),
+    SHAPE("points", scene_points_fields, "the particles themselves; they have no lattice"),
     {.key = "clip",
      .kind = SCENE_OBJECT,
      .unit = "1",
      .fields = clip_fields,
      .meaning = "box that cuts the shape"},
-    {.key = "rotate", .unsupported = true},
+    {.key = "rotate",
+     .kind = SCENE_CUSTOM,
+     .unit = "1",
+     .read = scene_body_rotate_read,
+     .schema = scene_body_rotate_schema,
+     .meaning = "turns shape, clip and lattice as a whole"},
     LATTICE("particles_per_cell", "1", 0.0, true, false, "particles per cell along each axis"),
     LATTICE("spacing", "m", 0.0, true, false, "distance of particles along each axis"),
     LATTICE("count", "1", 1.0, false, true, "particles along each axis of the bounding box"),
@@ -133,6 +138,35 @@ static void check_order(struct scene_reader *reader, const struct scene_path *pa
             scene_mistake(reader, &here, "range", NULL, NULL, "max %g must be above min %g", max[k],
                           min[k]);
     }
+}
+
+/* Points are their own lattice, everything else needs one. */
+static void check_lattice(struct scene_reader *reader, const struct scene_path *path,
+                          const json_t *given, const struct talus_body *body)
+{
+    static const char *const keys[] = {"particles_per_cell", "spacing", "count", NULL};
+    const bool listed = json_object_get(given, "points") != NULL;
+    bool known = false;
+    for (const char *const *key = keys; *key != NULL; key++) {
+        struct scene_path here = {.parent = path, .key = *key};
+        if (json_object_get(given, *key) == NULL)
+            continue;
+        known = true;
+        if (listed)
+            scene_mistake(reader, &here, "contradiction", NULL, NULL,
+                          "a list of points has no lattice");
+    }
+    struct scene_path clip = {.parent = path, .key = "clip"};
+    bool clipped = false;
+    for (size_t k = 0; k < reader->axis_count; k++)
+        clipped |= body->clip_min[k] > -INFINITY || body->clip_max[k] < INFINITY;
+    if (listed && clipped)
+        scene_mistake(reader, &clip, "contradiction", NULL, NULL,
+                      "a list of points is not clipped: leave points out instead");
+    struct scene_path first = {.parent = path, .key = keys[0]};
+    if (!listed && !known && json_is_object(given))
+        scene_mistake(reader, &first, "required", NULL, scene_word_list(keys),
+                      "one of these keys is required (lattice)");
 }
 
 static void check_shape(struct scene_reader *reader, const struct scene_path *path,
@@ -168,14 +202,16 @@ static void read_body(struct scene_reader *reader, const struct scene_path *path
     }
     body->surface = NAN;
     scene_fields_read(reader, path, scene_body_fields, given, &keys, effective);
-    if (json_object_get(given, "sphere") != NULL)
-        body->shape = TALUS_BODY_SPHERE;
-    else if (json_object_get(given, "cylinder") != NULL)
-        body->shape = TALUS_BODY_CYLINDER;
+    static const char *const shapes[] = {"box", "sphere", "cylinder", "polygon", "points"};
+    for (int shape = 0; shape <= (int)TALUS_BODY_POINTS; shape++) {
+        if (json_object_get(given, shapes[shape]) != NULL)
+            body->shape = (enum talus_body_shape)shape;
+    }
     if (json_object_get(given, "spacing") != NULL)
         body->lattice = TALUS_LATTICE_SPACING;
     else if (json_object_get(given, "count") != NULL)
         body->lattice = TALUS_LATTICE_COUNT;
+    check_lattice(reader, path, given, body);
     check_shape(reader, path, body);
     body->name = scene_entry_name(reader, path, keys.name, "body", effective);
     memcpy(item, body, sizeof *body);

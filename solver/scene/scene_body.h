@@ -11,4 +11,13 @@ void scene_body_velocity_read(struct scene_reader *reader, const struct scene_pa
                               const json_t *given, void *target, json_t *effective);
 json_t *scene_body_velocity_schema(void);
 
+/* Tables of `polygon` and `points`. */
+extern const struct scene_field scene_polygon_fields[];
+extern const struct scene_field scene_points_fields[];
+
+/* `rotate`: {angle, about, axis}; nothing: not turned. */
+void scene_body_rotate_read(struct scene_reader *reader, const struct scene_path *path,
+                            const json_t *given, void *target, json_t *effective);
+json_t *scene_body_rotate_schema(void);
+
 #endif

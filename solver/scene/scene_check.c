@@ -56,6 +56,10 @@ static void check_initial_stress(struct scene_reader *reader, size_t body_index)
     if (depth && seeding_vertical_axis(scene) == TALUS_NO_AXIS)
         scene_mistake(reader, &here, "contradiction", NULL, NULL,
                       "a stress that grows with depth needs gravity");
+    if (body->shape == TALUS_BODY_POINTS && depth && isnan(body->surface))
+        scene_mistake(reader, &here, "contradiction", NULL, NULL,
+                      "a list of points has no surface from which depth could run: give "
+                      "{\"hydrostatic\": {\"surface\": ...}} or six components");
     if (!model->volumetric)
         return;
     if (body->initial_stress == TALUS_INITIAL_GIVEN && has_shear(body->stress))
@@ -126,12 +130,16 @@ static void warn_of_overlap(struct scene_reader *reader)
         struct scene_path here = {.parent = &bodies, .index = index};
         struct seeding_shape shape;
         seeding_shape_init(&shape, scene, &scene->bodies[index]);
+        if (shape.turned || shape.body->shape == TALUS_BODY_POINTS)
+            continue;
         double volume = seeding_shape_volume(&shape);
         for (size_t before = 0; before < index; before++) {
             struct seeding_shape common = shape, other;
             if (scene->bodies[before].shape != TALUS_BODY_BOX)
                 continue;
             seeding_shape_init(&other, scene, &scene->bodies[before]);
+            if (other.turned)
+                continue;
             seeding_shape_cut(&common, other.min, other.max);
             double shared = seeding_shape_volume(&common);
             if (shared > 1e-6 * volume)

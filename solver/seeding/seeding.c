@@ -80,21 +80,24 @@ static bool allocate(struct particle_seed *seed, const struct talus_scene *scene
 struct body_values {
     struct seeding_lattice lattice;
     struct seeding_stress stress;
-    double volume, mass;
+    double volume, density;
 };
 
 static void write_particle(struct particle_seed *seed, size_t particle, size_t body_index,
                            const struct body_values *values, const uint64_t index[3])
 {
+    const struct talus_body *body = values->lattice.shape.body;
+    const bool listed = body->shape == TALUS_BODY_POINTS;
+    const double volume = listed ? body->point_volumes[index[0]] : values->volume;
     double position[3], velocity[3], stress[6];
-    seeding_lattice_position(&values->lattice, index, position);
-    seeding_velocity_at(values->lattice.shape.body, position, velocity);
+    seeding_lattice_world(&values->lattice, index, position);
+    seeding_velocity_at(body, position, velocity);
     for (size_t k = 0; k < 3; k++) {
         seed->position[k][particle] = position[k];
         seed->velocity[k][particle] = velocity[k];
     }
-    seed->volume[particle] = values->volume;
-    seed->mass[particle] = values->mass;
+    seed->volume[particle] = volume;
+    seed->mass[particle] = values->density * volume;
     seed->body[particle] = (uint16_t)body_index;
     if (seed->stress[0] == NULL)
         return;
@@ -129,13 +132,15 @@ static enum talus_status seed_body(const struct talus_scene *scene, size_t body_
     for (size_t k = 0; k < scene->axis_count; k++)
         values.volume *= values.lattice.spacing[k];
     const struct talus_material *material = &scene->materials[body->material_index];
-    values.mass = material->values[MATERIAL_VALUE_DENSITY] * values.volume;
-    uint64_t index[3], first, end;
+    values.density = material->values[MATERIAL_VALUE_DENSITY];
+    struct seeding_row row;
+    uint64_t index[3];
     for (index[2] = 0; index[2] < (uint64_t)values.lattice.count[2]; index[2]++) {
         for (index[1] = 0; index[1] < (uint64_t)values.lattice.count[1]; index[1]++) {
-            seeding_lattice_row(&values.lattice, index, &first, &end);
-            for (index[0] = first; index[0] < end; index[0]++)
-                write_particle(seed, (*particle)++, body_index, &values, index);
+            seeding_lattice_row(&values.lattice, index, &row);
+            for (size_t range = 0; range < row.count; range++)
+                for (index[0] = row.first[range]; index[0] < row.end[range]; index[0]++)
+                    write_particle(seed, (*particle)++, body_index, &values, index);
         }
     }
     return TALUS_OK;

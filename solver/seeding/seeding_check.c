@@ -4,6 +4,7 @@
 #include "seeding/seeding_lattice.h"
 
 #include <math.h>
+#include <stdbool.h>
 #include <stdio.h>
 
 static const double count_limit = 9007199254740992.0; /* 2^53: whole numbers up to here are exact */
@@ -30,7 +31,7 @@ static uint64_t count_particles(const struct talus_scene *scene,
     double points = seeding_lattice_point_count(lattice);
     if (seeding_shape_is_empty(&lattice->shape))
         return 0;
-    if (lattice->shape.body->shape == TALUS_BODY_BOX || points > count_limit)
+    if (!seeding_lattice_selects(lattice) || points > count_limit)
         return saturate(points);
     if (lattice->count[1] * lattice->count[2] <= row_limit(scene) / 16.0)
         return seeding_lattice_kept(lattice);
@@ -44,17 +45,20 @@ static uint64_t count_cells(const struct talus_scene *scene, const struct seedin
 {
     /* A body that ends on a grid line does not touch the cell behind it. */
     const double slack = 1e-9;
-    double cells = 1.0;
+    double cells = 1.0, low[3], high[3];
     if (seeding_shape_is_empty(shape))
         return 0;
+    seeding_shape_bounds(shape, low, high);
     for (size_t k = 0; k < shape->axis_count; k++) {
         const struct talus_grid *grid = &scene->grid;
-        double begin = floor((shape->min[k] - grid->min[k]) / grid->cell[k] + slack);
-        double end = ceil((shape->max[k] - grid->min[k]) / grid->cell[k] - slack);
+        double begin = floor((low[k] - grid->min[k]) / grid->cell[k] + slack);
+        double end = ceil((high[k] - grid->min[k]) / grid->cell[k] - slack);
         begin = fmax(begin, 0.0);
         end = fmin(end, (double)grid->cell_count[k]);
         cells *= fmax(0.0, end - begin);
     }
+    if (shape->body->shape == TALUS_BODY_POINTS)
+        cells = fmin(cells, (double)shape->body->point_count);
     return saturate(cells);
 }
 
@@ -92,22 +96,63 @@ static enum talus_status check_inside_grid(const struct talus_scene *scene, size
                                            struct talus_error *error)
 {
     const struct talus_grid *grid = &scene->grid;
+    double low[3], high[3];
+    seeding_shape_bounds(shape, low, high);
     for (size_t k = 0; k < shape->axis_count; k++) {
         double slack = 1e-9 * grid->cell[k];
         double end = grid->min[k] + (double)grid->cell_count[k] * grid->cell[k];
-        if (shape->min[k] >= grid->min[k] - slack && shape->max[k] <= end + slack)
+        if (low[k] >= grid->min[k] - slack && high[k] <= end + slack)
             continue;
         char pointer[64];
         (void)snprintf(pointer, sizeof pointer, "/bodies/%zu", body_index);
         return talus_error_set(
             error, TALUS_INVALID, "range", pointer,
             "body '%s' reaches from %g to %g m on the %c axis, but the grid from %g to %g m",
-            shape->body->name, shape->min[k], shape->max[k], "xyz"[k], grid -> min[k], end);
+            shape->body->name, low[k], high[k], "xyz"[k], grid -> min[k], end);
     }
     return TALUS_OK;
 }
 
-/* Material inside an obstacle: the volume that body and obstacle share. */
+/* Share of the particles that lie in the box: of bodies whose volume in it has no simple form. */
+static double share_of_particles(const struct talus_scene *scene, size_t body_index,
+                                 const struct talus_boundary *box)
+{
+    struct seeding_lattice lattice;
+    struct seeding_row row;
+    uint64_t index[3], inside = 0, all = 0;
+    seeding_lattice_init(&lattice, scene, &scene->bodies[body_index]);
+    if (seeding_lattice_point_count(&lattice) > 16.0 * row_limit(scene))
+        return 0.0;
+    for (index[2] = 0; index[2] < (uint64_t)lattice.count[2]; index[2]++) {
+        for (index[1] = 0; index[1] < (uint64_t)lattice.count[1]; index[1]++) {
+            seeding_lattice_row(&lattice, index, &row);
+            for (size_t range = 0; range < row.count; range++) {
+                for (index[0] = row.first[range]; index[0] < row.end[range]; index[0]++) {
+                    double place[3];
+                    bool within = true;
+                    seeding_lattice_world(&lattice, index, place);
+                    for (size_t k = 0; k < scene->axis_count; k++)
+                        within &= place[k] > box->box_min[k] && place[k] < box->box_max[k];
+                    inside += within;
+                    all++;
+                }
+            }
+        }
+    }
+    return all > 0 ? (double)inside / (double)all : 0.0;
+}
+
+static double share_in_box(const struct talus_scene *scene, size_t body_index,
+                           const struct seeding_shape *shape, const struct talus_boundary *box)
+{
+    if (shape->turned || shape->body->shape == TALUS_BODY_POINTS)
+        return share_of_particles(scene, body_index, box);
+    struct seeding_shape common = *shape;
+    seeding_shape_cut(&common, box->box_min, box->box_max);
+    return seeding_shape_volume(&common) / seeding_shape_volume(shape);
+}
+
+/* Material inside an obstacle. */
 static enum talus_status check_obstacles(const struct talus_scene *scene, size_t body_index,
                                          const struct seeding_shape *shape,
                                          struct talus_error *error)
@@ -117,17 +162,14 @@ static enum talus_status check_obstacles(const struct talus_scene *scene, size_t
         if (boundary->shape != TALUS_BOUNDARY_BOX ||
             (boundary->body_index >= 0 && (size_t)boundary->body_index != body_index))
             continue;
-        struct seeding_shape common = *shape;
-        seeding_shape_cut(&common, boundary->box_min, boundary->box_max);
-        double shared = seeding_shape_volume(&common);
-        if (shared <= 1e-9 * seeding_shape_volume(shape))
+        const double share = share_in_box(scene, body_index, shape, boundary);
+        if (!(share > 1e-9))
             continue;
         char pointer[64];
         (void)snprintf(pointer, sizeof pointer, "/bodies/%zu", body_index);
         return talus_error_set(error, TALUS_INVALID, "contradiction", pointer,
                                "body '%s' has %.3g %% of its volume inside the obstacle '%s'",
-                               shape->body->name, 100.0 * shared / seeding_shape_volume(shape),
-                               boundary->name);
+                               shape->body->name, 100.0 * share, boundary->name);
     }
     return TALUS_OK;
 }
@@ -145,7 +187,8 @@ static enum talus_status check_lattice(const struct talus_scene *scene, size_t b
         return talus_error_set(error, TALUS_INVALID, "range", pointer,
                                "body '%s' asks for about %.3g particles; %d are allowed",
                                body->name, points, SEEDING_PARTICLE_MAX);
-    if (body->shape == TALUS_BODY_BOX || lattice.count[1] * lattice.count[2] > row_limit(scene))
+    if (!seeding_lattice_selects(&lattice) ||
+        lattice.count[1] * lattice.count[2] > row_limit(scene))
         return TALUS_OK;
     uint64_t kept = seeding_lattice_kept(&lattice);
     if (kept == 0)

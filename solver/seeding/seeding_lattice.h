@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The lattice of a body: points evenly spaced over the bounding box of its (cut) shape, half a
- * spacing from the sides; a point is kept if it lies inside the shape. Owns nothing. */
+/* The lattice of a body (of a list of points: the points in one row): points evenly spaced over the
+ * bounding box of its (cut) shape, half a spacing from the sides; a point is kept if it lies inside
+ * the shape. Owns nothing. */
 #ifndef TALUS_SEEDING_LATTICE_H
 #define TALUS_SEEDING_LATTICE_H
 
@@ -21,14 +22,25 @@ void seeding_lattice_init(struct seeding_lattice *lattice, const struct talus_sc
 /* Points of the lattice before the shape selects (exact up to 2^53). */
 double seeding_lattice_point_count(const struct seeding_lattice *lattice);
 
-/* Position [m] of point i, j, k. */
+/* True if the shape keeps some points and not others. */
+bool seeding_lattice_selects(const struct seeding_lattice *lattice);
+
+/* Position [m] of point i, j, k: in the world, and before the body is turned. */
+void seeding_lattice_world(const struct seeding_lattice *lattice, const uint64_t index[3],
+                           double position[3]);
 void seeding_lattice_position(const struct seeding_lattice *lattice, const uint64_t index[3],
                               double position[3]);
 
-/* The points [first, end) of row (row[1], row[2]) along x that are inside. Needs point counts that
- * fit 2^53. */
-void seeding_lattice_row(const struct seeding_lattice *lattice, uint64_t row[3], uint64_t *first,
-                         uint64_t *end);
+/* Points of a row that are inside: growing ranges [first, end) that do not overlap. */
+struct seeding_row {
+    size_t count;
+    uint64_t first[2 * SEEDING_INTERVAL_MAX], end[2 * SEEDING_INTERVAL_MAX];
+};
+
+/* Row (index[1], index[2]) along x. Needs point counts that fit 2^53. A side of a polygon on which
+ * a row lies belongs to it, whether the material is above or below. */
+void seeding_lattice_row(const struct seeding_lattice *lattice, uint64_t index[3],
+                         struct seeding_row *row);
 
 /* Number of kept points, row by row: takes about 50 ns a row. */
 uint64_t seeding_lattice_kept(const struct seeding_lattice *lattice);

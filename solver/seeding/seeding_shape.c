@@ -5,10 +5,7 @@
 #include <math.h>
 #include <string.h>
 
-static const double surface_tolerance = 1e-10;
-
-/* Unit axis of a cylinder; returns its length [m]. */
-static double cylinder_axis(const struct talus_body *body, double axis[3])
+double seeding_cylinder_axis(const struct talus_body *body, double axis[3])
 {
     double length = 0.0;
     for (int k = 0; k < 3; k++)
@@ -18,25 +15,95 @@ static double cylinder_axis(const struct talus_body *body, double axis[3])
     return length;
 }
 
-static void bound_body(const struct talus_body *body, size_t axis_count, double min[3],
-                       double max[3])
+static void include(double min[3], double max[3], const double point[3])
 {
-    double axis[3] = {0.0, 0.0, 0.0};
-    assert(axis_count <= 3);
+    for (size_t k = 0; k < 3; k++) {
+        min[k] = fmin(min[k], point[k]);
+        max[k] = fmax(max[k], point[k]);
+    }
+}
+
+/* Includes a point of the shape, turned or not. */
+static void include_point(const struct seeding_shape *shape, bool world, const double point[3],
+                          double min[3], double max[3])
+{
+    double place[3];
+    memcpy(place, point, sizeof place);
+    if (world)
+        seeding_shape_to_world(shape, point, place);
+    include(min, max, place);
+}
+
+static void include_corners(const struct seeding_shape *shape, bool world, const double low[3],
+                            const double high[3], double min[3], double max[3])
+{
+    for (unsigned corner = 0; corner < 8; corner++) {
+        double point[3];
+        for (size_t k = 0; k < 3; k++)
+            point[k] = (corner >> k & 1u) != 0 ? high[k] : low[k];
+        include_point(shape, world, point, min, max);
+    }
+}
+
+/* Half the extent of the round part of a sphere or cylinder on each axis. */
+static void round_extent(const struct seeding_shape *shape, bool world, double half[3])
+{
+    const struct talus_body *body = shape->body;
+    double along[3] = {0.0, 0.0, 0.0}, axis[3] = {0.0, 0.0, 0.0};
     if (body->shape == TALUS_BODY_CYLINDER)
-        (void)cylinder_axis(body, axis);
-    for (size_t k = 0; k < axis_count; k++) {
-        if (body->shape == TALUS_BODY_BOX) {
-            min[k] = body->box_min[k];
-            max[k] = body->box_max[k];
-        } else if (body->shape == TALUS_BODY_SPHERE) {
-            min[k] = body->centre[k] - body->radius;
-            max[k] = body->centre[k] + body->radius;
-        } else {
-            double half = body->radius * sqrt(fmax(0.0, 1.0 - axis[k] * axis[k]));
-            min[k] = fmin(body->from[k], body->to[k]) - half;
-            max[k] = fmax(body->from[k], body->to[k]) + half;
-        }
+        (void)seeding_cylinder_axis(body, along);
+    for (size_t k = 0; k < 3; k++)
+        for (size_t l = 0; l < 3; l++)
+            axis[k] += (world ? shape->turn[k][l] : (double)(k == l)) * along[l];
+    for (size_t k = 0; k < 3; k++)
+        half[k] = body->radius * sqrt(fmax(0.0, 1.0 - axis[k] * axis[k]));
+}
+
+/* Bounding box of the whole shape, without its clip box. */
+static void bound_body(const struct seeding_shape *shape, bool world, double min[3], double max[3])
+{
+    const struct talus_body *body = shape->body;
+    double half[3] = {0.0, 0.0, 0.0};
+    for (size_t k = 0; k < 3; k++) {
+        min[k] = INFINITY;
+        max[k] = -INFINITY;
+    }
+    if (body->shape == TALUS_BODY_BOX)
+        include_corners(shape, world, body->box_min, body->box_max, min, max);
+    for (size_t k = 0; k < body->vertex_count && body->shape == TALUS_BODY_POLYGON; k++)
+        include_point(shape, world,
+                      (double[3]){body->vertices[2 * k], body->vertices[2 * k + 1], 0.0}, min, max);
+    for (size_t k = 0; k < body->point_count && body->shape == TALUS_BODY_POINTS; k++)
+        include_point(shape, world, body->point_positions + 3 * k, min, max);
+    if (body->shape == TALUS_BODY_SPHERE || body->shape == TALUS_BODY_CYLINDER) {
+        const bool sphere = body->shape == TALUS_BODY_SPHERE;
+        include_point(shape, world, sphere ? body->centre : body->from, min, max);
+        include_point(shape, world, sphere ? body->centre : body->to, min, max);
+        round_extent(shape, world, half);
+    }
+    for (size_t k = 0; k < 3; k++) {
+        min[k] = k < shape->axis_count ? min[k] - half[k] : 0.0;
+        max[k] = k < shape->axis_count ? max[k] + half[k] : 0.0;
+    }
+}
+
+/* Rodrigues' formula. Sine and cosine of right angles are whole, so that boxes stay boxes. */
+static void turn_init(struct seeding_shape *shape)
+{
+    const double radians = shape->body->rotate_angle_deg * (3.14159265358979323846 / 180.0);
+    const double *axis = shape->body->rotate_axis, tiny = 1e-15;
+    double sine = sin(radians), cosine = cos(radians);
+    if (fabs(sine) < tiny || fabs(cosine) < tiny) {
+        sine = round(sine);
+        cosine = round(cosine);
+    }
+    for (size_t k = 0; k < 3; k++) {
+        const size_t next = (k + 1) % 3, last = (k + 2) % 3;
+        for (size_t l = 0; l < 3; l++)
+            shape->turn[k][l] = (1.0 - cosine) * axis[k] * axis[l];
+        shape->turn[k][k] += cosine;
+        shape->turn[k][next] -= sine * axis[last];
+        shape->turn[k][last] += sine * axis[next];
     }
 }
 
@@ -46,7 +113,10 @@ void seeding_shape_init(struct seeding_shape *shape, const struct talus_scene *s
     memset(shape, 0, sizeof *shape);
     shape->body = body;
     shape->axis_count = scene->axis_count;
-    bound_body(body, scene->axis_count, shape->min, shape->max);
+    assert(shape->axis_count <= 3);
+    shape->turned = body->rotate_angle_deg != 0.0;
+    turn_init(shape);
+    bound_body(shape, false, shape->min, shape->max);
     seeding_shape_cut(shape, body->clip_min, body->clip_max);
 }
 
@@ -61,6 +131,8 @@ void seeding_shape_cut(struct seeding_shape *shape, const double min[3], const d
 
 bool seeding_shape_is_empty(const struct seeding_shape *shape)
 {
+    if (shape->body->shape == TALUS_BODY_POINTS)
+        return shape->body->point_count == 0;
     for (size_t k = 0; k < shape->axis_count; k++) {
         if (!(shape->max[k] > shape->min[k]))
             return true;
@@ -68,74 +140,53 @@ bool seeding_shape_is_empty(const struct seeding_shape *shape)
     return false;
 }
 
-/* Cuts the interval, given as offsets from the point, with {t: a t^2 + 2 b t + c <= 0}, a >= 0. */
-static bool cut_quadratic(double a, double b, double c, double offset[2])
+void seeding_shape_to_world(const struct seeding_shape *shape, const double point[3],
+                            double world[3])
 {
-    if (a < 1e-14) /* the line runs along the axis of the cylinder */
-        return c <= 0.0;
-    double discriminant = b * b - a * c;
-    if (discriminant < 0.0)
-        return false;
-    double half = sqrt(discriminant) / a;
-    offset[0] = fmax(offset[0], -b / a - half);
-    offset[1] = fmin(offset[1], -b / a + half);
-    return offset[0] <= offset[1];
-}
-
-static bool cut_sphere(const struct seeding_shape *shape, const double point[3], size_t axis,
-                       double offset[2])
-{
-    const struct talus_body *body = shape->body;
-    double radius = body->radius * (1.0 + surface_tolerance);
-    double square = -radius * radius;
-    for (size_t k = 0; k < shape->axis_count; k++)
-        square += (point[k] - body->centre[k]) * (point[k] - body->centre[k]);
-    return cut_quadratic(1.0, point[axis] - body->centre[axis], square, offset);
-}
-
-static bool cut_cylinder(const struct seeding_shape *shape, const double point[3], size_t axis,
-                         double offset[2])
-{
-    const struct talus_body *body = shape->body;
-    double direction[3];
-    double length = cylinder_axis(body, direction);
-    double along = 0.0, square = 0.0;
+    const double *about = shape->body->rotate_about;
     for (size_t k = 0; k < 3; k++) {
-        double distance = point[k] - body->from[k];
-        along += distance * direction[k];
-        square += distance * distance;
+        world[k] = shape->turned ? about[k] : point[k];
+        for (size_t l = 0; l < 3 && shape->turned; l++)
+            world[k] += shape->turn[k][l] * (point[l] - about[l]);
     }
-    double slack = surface_tolerance * body->radius;
-    double slope = direction[axis];
-    if (fabs(slope) < 1e-14) {
-        if (along < -slack || along > length + slack)
-            return false;
-    } else {
-        double first = (-slack - along) / slope, second = (length + slack - along) / slope;
-        offset[0] = fmax(offset[0], fmin(first, second));
-        offset[1] = fmin(offset[1], fmax(first, second));
-    }
-    double radius = body->radius * (1.0 + surface_tolerance);
-    return cut_quadratic(1.0 - slope * slope, point[axis] - body->from[axis] - along * slope,
-                         square - along * along - radius * radius, offset) &&
-           offset[0] <= offset[1];
 }
 
-bool seeding_shape_interval(const struct seeding_shape *shape, const double point[3],
-                            enum talus_axis axis, double interval[2])
+void seeding_shape_direction(const struct seeding_shape *shape, const double world[3],
+                             double direction[3])
 {
-    size_t along = (size_t)axis;
-    for (size_t k = 0; k < shape->axis_count; k++) {
-        if (k != along && (point[k] < shape->min[k] || point[k] > shape->max[k]))
-            return false;
+    for (size_t k = 0; k < 3; k++) {
+        direction[k] = shape->turned ? 0.0 : world[k];
+        for (size_t l = 0; l < 3 && shape->turned; l++)
+            direction[k] += shape->turn[l][k] * world[l];
     }
-    double offset[2] = {shape->min[along] - point[along], shape->max[along] - point[along]};
-    bool inside = offset[0] <= offset[1];
-    if (inside && shape->body->shape == TALUS_BODY_SPHERE)
-        inside = cut_sphere(shape, point, along, offset);
-    else if (inside && shape->body->shape == TALUS_BODY_CYLINDER)
-        inside = cut_cylinder(shape, point, along, offset);
-    interval[0] = point[along] + offset[0];
-    interval[1] = point[along] + offset[1];
-    return inside;
+}
+
+void seeding_shape_from_world(const struct seeding_shape *shape, const double world[3],
+                              double point[3])
+{
+    const double *about = shape->body->rotate_about;
+    double arm[3] = {0.0, 0.0, 0.0};
+    memcpy(point, world, 3 * sizeof *point);
+    if (!shape->turned)
+        return;
+    for (size_t k = 0; k < 3; k++)
+        arm[k] = world[k] - about[k];
+    seeding_shape_direction(shape, arm, point);
+    for (size_t k = 0; k < 3; k++)
+        point[k] += about[k];
+}
+
+void seeding_shape_bounds(const struct seeding_shape *shape, double min[3], double max[3])
+{
+    memcpy(min, shape->min, 3 * sizeof *min);
+    memcpy(max, shape->max, 3 * sizeof *max);
+    if (!shape->turned)
+        return;
+    double low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY};
+    include_corners(shape, true, shape->min, shape->max, low, high);
+    bound_body(shape, true, min, max);
+    for (size_t k = 0; k < shape->axis_count; k++) {
+        min[k] = fmax(min[k], low[k]);
+        max[k] = fmin(max[k], high[k]);
+    }
 }

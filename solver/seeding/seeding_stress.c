@@ -76,11 +76,20 @@ static double depth_at(const struct seeding_stress *stress, const double positio
     double place = position[stress->vertical];
     if (body->initial_stress == TALUS_INITIAL_HYDROSTATIC && !isnan(body->surface))
         return fmax(0.0, stress->up * (body->surface - place));
-    double interval[2];
-    if (!seeding_shape_interval(stress->shape, position, stress->vertical, interval))
-        return 0.0; /* a point on the surface, by rounding */
-    double top = stress->up > 0.0 ? interval[1] : interval[0];
-    return fmax(0.0, stress->up * (top - place));
+    double world[3] = {0.0, 0.0, 0.0}, direction[3], point[3];
+    struct seeding_line line;
+    world[stress->vertical] = 1.0;
+    seeding_shape_direction(stress->shape, world, direction);
+    seeding_shape_from_world(stress->shape, position, point);
+    seeding_shape_line(stress->shape, point, direction, &line);
+    for (size_t k = 0; k < line.count; k++) {
+        const double hair = 1e-9 * (line.offset[k][1] - line.offset[k][0]);
+        if (line.offset[k][0] > hair || line.offset[k][1] < -hair)
+            continue; /* material beyond a hole does not rest on this one */
+        const double top = place + line.offset[k][stress->up > 0.0 ? 1 : 0];
+        return fmax(0.0, stress->up * (top - place));
+    }
+    return 0.0; /* a point on the surface, by rounding */
 }
 
 void seeding_stress_at(const struct seeding_stress *stress, const double position[3],

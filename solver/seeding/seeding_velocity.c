@@ -86,12 +86,13 @@ static double speed_at(const struct talus_body *body, const double position[3])
 double seeding_largest_speed(const struct talus_scene *scene, const struct talus_body *body)
 {
     struct seeding_shape shape;
+    double largest = 0.0, low[3], high[3];
     seeding_shape_init(&shape, scene, body);
-    double largest = 0.0;
+    seeding_shape_bounds(&shape, low, high);
     for (unsigned corner = 0; corner < 1u << scene->axis_count; corner++) {
         double position[3];
         for (size_t k = 0; k < 3; k++)
-            position[k] = (corner >> k & 1u) != 0 ? shape.max[k] : shape.min[k];
+            position[k] = (corner >> k & 1u) != 0 ? high[k] : low[k];
         largest = fmax(largest, speed_at(body, position));
     }
     if (body->velocity_field == TALUS_VELOCITY_BEAM_MODE)

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Volume of a body: a cut sphere or cylinder is sliced perpendicular to an axis; a slice is a disc
  * cut by a convex polygon, whose area is closed form; the slices are integrated adaptively. */
+#include "seeding/seeding_polygon.h"
 #include "seeding/seeding_shape.h"
 
 #include <math.h>
@@ -175,8 +176,15 @@ double seeding_shape_volume(const struct seeding_shape *shape)
     const struct talus_body *body = shape->body;
     if (seeding_shape_is_empty(shape))
         return 0.0;
+    double volume = 0.0;
+    for (size_t k = 0; k < body->point_count && body->shape == TALUS_BODY_POINTS; k++)
+        volume += body->point_volumes[k];
+    if (body->shape == TALUS_BODY_POINTS)
+        return volume;
+    if (body->shape == TALUS_BODY_POLYGON)
+        return fabs(polygon_area(body->vertices, body->vertex_count, shape->min, shape->max));
     if (body->shape == TALUS_BODY_BOX || shape->axis_count == 1) {
-        double volume = 1.0;
+        volume = 1.0;
         for (size_t k = 0; k < shape->axis_count; k++)
             volume *= shape->max[k] - shape->min[k];
         return volume;

@@ -39,11 +39,22 @@ static void copy_materials(const struct talus_scene *scene, struct talus_scene *
     }
 }
 
+/* Everything a body owns; `copy` holds its plain members. */
+static void copy_body(const struct talus_body *body, struct talus_body *copy, bool *failed)
+{
+    const size_t number = sizeof(double);
+    copy->name = duplicate_text(body->name, failed);
+    copy->vertices = duplicate(body->vertices, 2 * body->vertex_count * number, failed);
+    copy->point_positions =
+        duplicate(body->point_positions, 3 * body->point_count * number, failed);
+    copy->point_volumes = duplicate(body->point_volumes, body->point_count * number, failed);
+}
+
 static void copy_named(const struct talus_scene *scene, struct talus_scene *copy, bool *failed)
 {
     copy->bodies = duplicate(scene->bodies, scene->body_count * sizeof *scene->bodies, failed);
     for (size_t index = 0; copy->bodies != NULL && index < scene->body_count; index++) {
-        copy->bodies[index].name = duplicate_text(scene->bodies[index].name, failed);
+        copy_body(&scene->bodies[index], &copy->bodies[index], failed);
         copy->body_count++;
     }
     copy->boundaries =

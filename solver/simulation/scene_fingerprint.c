@@ -87,6 +87,14 @@ static void add_bodies(uint64_t *hash, const struct talus_scene *scene)
         add_reals(hash, body->centre, 3);
         add_reals(hash, body->from, 3);
         add_reals(hash, body->to, 3);
+        add_number(hash, body->vertex_count);
+        add_reals(hash, body->vertices, 2 * body->vertex_count);
+        add_number(hash, body->point_count);
+        add_reals(hash, body->point_positions, 3 * body->point_count);
+        add_reals(hash, body->point_volumes, body->point_count);
+        add_reals(hash, &body->rotate_angle_deg, 1);
+        add_reals(hash, body->rotate_about, 3);
+        add_reals(hash, body->rotate_axis, 3);
         add_reals(hash, body->clip_min, 3);
         add_reals(hash, body->clip_max, 3);
         add_reals(hash, body->lattice_value, 3);

@@ -31,7 +31,9 @@ static double body_height(const struct talus_scene *scene, size_t index)
     if (vertical == TALUS_NO_AXIS)
         return 0;
     seeding_shape_init(&shape, scene, &scene->bodies[index]);
-    return fmax(0, shape.max[vertical] - shape.min[vertical]);
+    double low[3], high[3];
+    seeding_shape_bounds(&shape, low, high);
+    return fmax(0, high[vertical] - low[vertical]);
 }
 
 /* Speed [m/s] at which a body moves where it moves slowest: as thrown; falling by its height; or,

@@ -10,8 +10,12 @@ void talus_scene_release(struct talus_scene *scene)
         free(scene->materials[index].name);
         free(scene->materials[index].values);
     }
-    for (size_t index = 0; index < scene->body_count; index++)
+    for (size_t index = 0; index < scene->body_count; index++) {
         free(scene->bodies[index].name);
+        free(scene->bodies[index].vertices);
+        free(scene->bodies[index].point_positions);
+        free(scene->bodies[index].point_volumes);
+    }
     for (size_t index = 0; index < scene->boundary_count; index++)
         free(scene->boundaries[index].name);
     for (size_t index = 0; index < scene->probe_count; index++)

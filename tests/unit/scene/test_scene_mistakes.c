@@ -20,6 +20,8 @@ struct mistake {
     const char *code;
 };
 
+#define BODY(REST) "{\"name\": \"heap\", \"material\": \"soil\", " REST "}"
+
 static const struct mistake mistakes[] = {
     /* ---- root ---- */
     {BASE_PLANE, "/dimension", NULL, NULL, "required"},
@@ -135,8 +137,56 @@ static const struct mistake mistakes[] = {
     {BASE_PLANE, "/bodies/0/box/max", "[4, 0]", "/bodies/0/box/max/1", "range"},
     {BASE_PLANE, "/bodies/0/box/max", "[9, 2]", "/bodies/0", "contradiction"},
     {BASE_PLANE, "/bodies/0/box/max", "[4, 2, 1]", NULL, "length"},
-    {BASE_PLANE, "/bodies/0/polygon", "{\"vertices\": []}", NULL, "unsupported"},
-    {BASE_PLANE, "/bodies/0/rotate", "{\"angle\": 10}", NULL, "unsupported"},
+    {BASE_PLANE, "/bodies/0", BODY("\"polygon\": {\"vertices\": [[0, 0], [1, 0]]}, \"count\": 9"),
+     "/bodies/0/polygon/vertices", "length"},
+    {BASE_PLANE, "/bodies/0",
+     BODY("\"polygon\": {\"vertices\": [[0, 0], [1, 1], [1, 0], [0, 1]]}, \"count\": 9"),
+     "/bodies/0/polygon/vertices", "contradiction"},
+    {BASE_PLANE, "/bodies/0",
+     BODY("\"polygon\": {\"vertices\": [[0, 0], [1, 0], [1, 0, 1]]}, \"count\": 9"),
+     "/bodies/0/polygon/vertices/2", "length"},
+    {BASE_PLANE, "/bodies/0", BODY("\"polygon\": {\"vertices\": [[0, 0], [1, 0], [0, 1]]}"),
+     "/bodies/0/particles_per_cell", "required"},
+    {BASE_PLANE, "/bodies/0",
+     BODY("\"polygon\": {\"vertices\": [[0, 0], [9, 0], [0, 9]]}, "
+          "\"particles_per_cell\": 2, \"box\": {\"min\": [0, 0], "
+          "\"max\": [1, 1]}"),
+     "/bodies/0/polygon", "contradiction"},
+    {BASE_SOLID, "/bodies/0",
+     "{\"material\": \"rubber\", \"count\": 9, \"polygon\": "
+     "{\"vertices\": [[1, 1, 1], [2, 1, 1], [1, 2, 1]]}}",
+     "/bodies/0/polygon/vertices", "contradiction"},
+    {BASE_PLANE, "/bodies/0", BODY("\"points\": {\"positions\": [[1, 1]], \"volumes\": [0]}"),
+     "/bodies/0/points/volumes/0", "range"},
+    {BASE_PLANE, "/bodies/0", BODY("\"points\": {\"positions\": [[1, 1]], \"volumes\": [1, 2]}"),
+     "/bodies/0/points/volumes", "length"},
+    {BASE_PLANE, "/bodies/0", BODY("\"points\": {\"positions\": [], \"volumes\": []}"),
+     "/bodies/0/points/positions", "length"},
+    {BASE_PLANE, "/bodies/0", BODY("\"points\": {\"positions\": [[1, -1]], \"volumes\": [1]}"),
+     "/bodies/0", "range"},
+    {BASE_PLANE, "/bodies/0", BODY("\"points\": {\"positions\": [[9, 1]], \"volumes\": [1]}"),
+     "/bodies/0", "contradiction"},
+    {BASE_PLANE, "/bodies/0",
+     BODY("\"points\": {\"positions\": [[1, 1]], \"volumes\": [1]}, \"spacing\": 1"),
+     "/bodies/0/spacing", "contradiction"},
+    {BASE_PLANE, "/bodies/0",
+     BODY("\"points\": {\"positions\": [[1, 1]], \"volumes\": [1]}, \"clip\": {\"min\": [0, 0]}"),
+     "/bodies/0/clip", "contradiction"},
+    {BASE_PLANE, "/bodies/0",
+     BODY("\"points\": {\"positions\": [[1, 1]], \"volumes\": [1]}, \"initial_stress\": "
+          "{\"geostatic\": {\"k0\": 0.5}}"),
+     "/bodies/0/initial_stress", "contradiction"},
+    {BASE_PLANE, "/bodies/0",
+     BODY("\"box\": {\"min\": [0, 0], \"max\": [4, 2]}, \"count\": 4, "
+          "\"rotate\": {\"angle\": 45, \"about\": [0, 0]}"),
+     "/bodies/0", "range"},
+    {BASE_PLANE, "/bodies/0/rotate", "{\"angle\": 10}", "/bodies/0/rotate/about", "required"},
+    {BASE_PLANE, "/bodies/0/rotate", "{\"angle\": 1, \"about\": [1, 1], \"axis\": [0, 1]}",
+     "/bodies/0/rotate/axis", "contradiction"},
+    {BASE_SOLID, "/bodies/0/rotate", "{\"angle\": 1, \"about\": [1, 1, 1]}",
+     "/bodies/0/rotate/axis", "required"},
+    {BASE_SOLID, "/bodies/0/rotate", "{\"angle\": 1, \"about\": [1, 1, 1], \"axis\": [0, 0, 0]}",
+     "/bodies/0/rotate/axis", "range"},
     {BASE_PLANE, "/bodies/0/clip", "{\"min\": [5, null]}", "/bodies/0", "empty"},
     {BASE_PLANE, "/bodies/0/clip", "{\"low\": [5, null]}", "/bodies/0/clip/low", "unknown_key"},
     {BASE_PLANE, "/bodies/0/particles_per_cell", NULL, NULL, "required"},
