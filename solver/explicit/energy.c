@@ -111,7 +111,8 @@ double run_energy_turnover(const struct run *run)
     const struct run_energy *energy = &run->energy;
     return run->audit.initial_stored + energy->kinetic + energy->strain + energy->plastic +
            energy->viscous + energy->damping + energy->wall + fabs(energy->eliminated) +
-           fabs(energy->external) + fabs(run->audit.initial_potential - energy->potential);
+           fmax(fabs(energy->external), energy->exchanged) +
+           fabs(run->audit.initial_potential - energy->potential);
 }
 
 void run_measure_momentum(const struct run *run, double momentum[3], double *mass)

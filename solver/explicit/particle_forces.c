@@ -90,4 +90,5 @@ void run_book_forces(struct run *run, double factor)
     run->audit.exchanged +=
         sqrt(impulse[0] * impulse[0] + impulse[1] * impulse[1] + impulse[2] * impulse[2]);
     run->energy.external += work;
+    run->energy.exchanged += fabs(work);
 }

@@ -87,7 +87,8 @@ struct node_sums {
 struct run_energy {
     double kinetic, strain, potential;                  /* [J] now */
     double plastic, viscous, damping, wall, eliminated; /* [J] accumulated */
-    double external; /* [J] accumulated work of forces that the potential does not know */
+    double external;  /* [J] accumulated work of forces that the potential does not know */
+    double exchanged; /* [J] the same, given and taken added up */
 };
 
 struct run_audit {

@@ -51,6 +51,19 @@ static struct talus_simulation *start(const struct simulation_fixture *fixture, 
     return simulation;
 }
 
+/* [J] */
+static double numerical_loss(struct talus_simulation *simulation)
+{
+    size_t count = 0;
+    (void)talus_simulation_columns(simulation, &count);
+    double *row = calloc(count, sizeof *row);
+    assert_non_null(row);
+    talus_simulation_sample(simulation, row);
+    const double loss = row[simulation_column(simulation, "energy.numerical")];
+    free(row);
+    return loss;
+}
+
 static void check_like_gravity(enum talus_stress_update ordering)
 {
     struct simulation_fixture forced, heavy;
@@ -66,8 +79,7 @@ static void check_like_gravity(enum talus_stress_update ordering)
         assert_close(left[index], right[index], 1e-9, 1.0);
     struct talus_error error = {0};
     assert_int_equal(talus_simulation_audit(a, &error), TALUS_OK);
-    assert_close(simulation_metric(a, "energy_numerical"), simulation_metric(b, "energy_numerical"),
-                 1e-6, 1.0);
+    assert_close(numerical_loss(a), numerical_loss(b), 1e-6, 1.0);
     free(left);
     free(right);
     talus_simulation_destroy(a);
