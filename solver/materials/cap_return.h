@@ -9,12 +9,12 @@
 #ifndef TALUS_CAP_RETURN_H
 #define TALUS_CAP_RETURN_H
 
+#include "materials/cone_parameters.h"
 #include "materials/invariants.h"
 
 struct cap {
     struct elasticity elasticity;
-    double slope, flow_slope; /* rho_F, rho_G [-] */
-    double strength;          /* mu [Pa] */
+    struct cone cone;
     double radius;            /* R_t [Pa] */
     double tangent_invariant; /* I_t [Pa] */
     double tangent_norm;      /* |s|_t [Pa] */
@@ -22,9 +22,8 @@ struct cap {
 
 struct cap_law { /* what the loops compute with */
     struct stiffness stiffness;
-    real slope, strength;
-    real flow_bulk; /* fall of I1 over the multiplier of the cone [Pa] */
-    real inverse;   /* multiplier over what is beyond the cone [1/Pa] */
+    struct cone_law cone;
+    real strength;
     real radius, radius_square, tangent_invariant, tangent_norm;
     real wedge_norm, wedge_first,
         wedge;                        /* positive between the flow directions of cone and circle */
@@ -35,13 +34,10 @@ static inline struct cap_law cap_law_of(const struct cap *cap)
 {
     const double shear = 2.0 * cap->elasticity.shear;
     const double bulk = 9.0 * cap->elasticity.bulk;
-    const double flow_bulk = bulk * cap->flow_slope;
     return (struct cap_law){
         .stiffness = elasticity_stiffness(&cap->elasticity),
-        .slope = (real)cap->slope,
-        .strength = (real)cap->strength,
-        .flow_bulk = (real)flow_bulk,
-        .inverse = (real)(1.0 / (shear + flow_bulk * cap->slope)),
+        .cone = cone_law_of(&cap->cone, cap->elasticity.bulk, shear, 0.0),
+        .strength = (real)cap->cone.strength,
         .radius = (real)cap->radius,
         .radius_square = (real)(cap->radius * cap->radius),
         .tangent_invariant = (real)cap->tangent_invariant,
@@ -68,7 +64,7 @@ static inline void cap_mark_yielding(const struct cap_law *constants,
     for (size_t index = 0; index < count; index++) {
         real first = invariants->first[index];
         real norm = invariants->norm[index];
-        real cone = norm + law.slope * first - law.strength;
+        real cone = cone_excess(&law.cone, first, norm, law.strength);
         real circle = norm * norm + first * first - law.radius_square;
         plastic_strain[index] = maximum(first > law.tangent_invariant ? circle : cone, 0);
         dissipation[index] = 0;
@@ -94,16 +90,16 @@ static inline void cap_return_to_cone(const struct cap_law *constants,
     for (size_t index = 0; index < count; index++) {
         real first = invariants->first[index];
         real norm = invariants->norm[index];
-        real excess = norm + law.slope * first - law.strength;
+        real excess = cone_excess(&law.cone, first, norm, law.strength);
         real wedge = law.wedge_norm * norm - law.wedge_first * first - law.wedge;
-        real multiplier = maximum(excess, 0) * law.inverse;
-        bool beyond = first - law.flow_bulk * multiplier > law.tangent_invariant;
+        real multiplier = cone_multiplier(&law.cone, excess);
+        bool beyond = first - law.cone.flow_bulk * multiplier > law.tangent_invariant;
         bool at_circle = (first > law.tangent_invariant) & (wedge < 0);
         bool yields = plastic_strain[index] > 0;
         bool to_circle = yields & beyond & at_circle;
         bool to_corner = yields & beyond & !at_circle;
         real along = beyond ? 0 : multiplier;
-        real returned = to_corner ? law.tangent_invariant : first - law.flow_bulk * along;
+        real returned = to_corner ? law.tangent_invariant : first - law.cone.flow_bulk * along;
         real left = to_corner ? law.tangent_norm : norm - law.stiffness.shear * along;
         real deviatoric = (norm - left) * law.shear_inverse;
         real spherical = (first - returned) * law.bulk_inverse;

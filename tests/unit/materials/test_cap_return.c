@@ -41,9 +41,10 @@ static enum region find_region(const struct cap *cap, double first, double plast
 /* Yield function over the size of the stress. */
 static double yield(const struct cap *cap, double first, double norm)
 {
-    double scale = cap->strength + fabs(first);
-    return first <= cap->tangent_invariant ? (norm + cap->slope * first - cap->strength) / scale
-                                           : (hypot(norm, first) - cap->radius) / scale;
+    double scale = cap->cone.strength + fabs(first);
+    return first <= cap->tangent_invariant
+               ? (norm + cap->cone.slope * first - cap->cone.strength) / scale
+               : (hypot(norm, first) - cap->radius) / scale;
 }
 
 /* How far the plastic strain is from the flow rule: (deviatoric norm, trace/3) against (1, rho_G)
@@ -52,7 +53,7 @@ static bool follows_flow(const struct cap *cap, enum region region, double devia
                          double spherical, double first, double norm)
 {
     double size = hypot(deviatoric, spherical);
-    double across_cone = spherical - cap->flow_slope * deviatoric;
+    double across_cone = spherical - cap->cone.flow_slope * deviatoric;
     double across_circle = spherical * norm - first * deviatoric;
     if (region == CONE)
         return fabs(across_cone) < 1e-9 * size;
@@ -76,7 +77,7 @@ static void check_slot(const struct cap *cap, const struct slots *slots,
     double spherical = (trial_trace - slots_trace(batch->strain, slot, 6)) / 3.0;
     regions[region]++;
     /* cancellation: a trial of 1000 times the strength leaves 1e-13 of the strength */
-    assert_true(yield(cap, first, norm) < 1e-12 * (1.0 + size * 1e7 / cap->strength));
+    assert_true(yield(cap, first, norm) < 1e-12 * (1.0 + size * 1e7 / cap->cone.strength));
     assert_true(batch->dissipation[slot] >= 0.0);
     if (region == ELASTIC)
         return;

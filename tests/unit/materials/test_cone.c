@@ -64,9 +64,9 @@ static void assert_cap(const struct setting *own, size_t count, double slope, do
                        double strength)
 {
     struct cap cap = prepare(own, count);
-    assert_true(fabs(cap.slope - slope) < 1e-12);
-    assert_true(fabs(cap.flow_slope - flow_slope) < 1e-12);
-    assert_true(fabs(cap.strength - strength) < 1e-9 * strength);
+    assert_true(fabs(cap.cone.slope - slope) < 1e-12);
+    assert_true(fabs(cap.cone.flow_slope - flow_slope) < 1e-12);
+    assert_true(fabs(cap.cone.strength - strength) < 1e-9 * strength);
     /* the circle about the origin touches the cone at the tangent point */
     double radius = hypot(cap.tangent_invariant, cap.tangent_norm);
     assert_true(fabs(radius - cap.radius) < 1e-12 * radius);
