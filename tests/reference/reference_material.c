@@ -152,7 +152,8 @@ static double apex_invariant(const struct material *material, const double *valu
 }
 
 /* Cone and flat cut-off at the apex, both surfaces tried (Mast 2013, sec. 3.6.1, eq. 3.93-3.100
- * without hardening inside the step; the second is dropped if its multiplier is negative). */
+ * without hardening inside the step; the second is dropped if its multiplier is negative).
+ * Contraction ends at I1 = 0 or at once under tension. */
 static void mobilised_cone_return(const struct material *material, const double *values,
                                   struct reference_history *history, double stress[3])
 {
@@ -170,15 +171,13 @@ static void mobilised_cone_return(const struct material *material, const double 
     const double multiplier = excess / resistance;
     const double cone_first = first - 9.0 * e.bulk * flow * multiplier;
     const double cone_norm = norm - 2.0 * e.shear * multiplier;
-    bool apex_active;
-    if (flow >= 0) {
-        /* With both surfaces active the first multiplier is |s|/(2 G). */
-        const double second = above / (9.0 * e.bulk) - flow * norm / (2.0 * e.shear);
-        apex_active = above > 0 && second >= 0;
-    } else {
-        apex_active = !(resistance > 0 && cone_norm >= 0 && cone_first <= apex);
+    const double stop = fmax(first, 0);
+    if (flow < 0 && above < 0 && (resistance <= 0 || cone_first > stop)) {
+        from_invariants(stop, slope * (apex - stop), n, stress);
+        return;
     }
-    if (apex_active)
+    /* With both surfaces active the first multiplier is |s|/(2 G). */
+    if (above > 0 && above / (9.0 * e.bulk) >= fmax(flow, 0) * norm / (2.0 * e.shear))
         from_invariants(apex, 0, n, stress);
     else
         from_invariants(cone_first, cone_norm, n, stress);
@@ -222,14 +221,14 @@ static void matsuoka_nakai_return(const struct material *material, const double 
         return;
     const double flow = fmin(outer_cone_slope(dilation), matsuoka_nakai_slope(kappa, n));
     double low = 0, high = norm / (2.0 * e.shear);
-    if (first - 9.0 * e.bulk * flow * high >= 3.0 * shift) {
+    if (first - 9.0 * e.bulk * fmax(flow, 0) * high >= 3.0 * shift) {
         from_invariants(3.0 * shift, 0, n, stress);
         return;
     }
     for (int iteration = 0; iteration < 100; iteration++) {
         const double middle = 0.5 * (low + high);
-        from_invariants(first - 9.0 * e.bulk * flow * middle, norm - 2.0 * e.shear * middle, n,
-                        stress);
+        const double along = first - 9.0 * e.bulk * flow * middle;
+        from_invariants(fmin(along, fmax(first, 0)), norm - 2.0 * e.shear * middle, n, stress);
         if (matsuoka_nakai_admits(kappa, shift, stress))
             high = middle;
         else
@@ -277,13 +276,55 @@ static struct tensor step_rotation(const struct reference_update *update)
                           tensor_add(tensor_unit(), 1.0, spin));
 }
 
-/* Radial return about the back stress (Mast 2013, eq. 3.69-3.83); not coaxial with the strain, so
- * with whole tensors. */
-static void update_j2(const struct material *material, const double *values,
-                      struct reference_history *history, struct reference_update *update)
+struct cone {
+    double slope, flow, strength;
+};
+
+/* |eta| + slope I1 = strength + sqrt(2/3) k a_iso; J2 is a cone of slope 0. */
+static struct cone read_cone(const struct material *material, const double *values)
+{
+    if (strcmp(material->name, "j2") == 0)
+        return (struct cone){0, 0,
+                             sqrt(2.0 / 3.0) * reference_value(material, values, "yield_stress")};
+    const double angle = reference_value(material, values, "friction_angle") * M_PI / 180.0;
+    const double factor = sqrt(2.0 / 3.0) / (3.0 - sin(angle));
+    const double slope = 2.0 * factor * sin(angle);
+    return (struct cone){slope, slope * reference_value(material, values, "flow_ratio"),
+                         6.0 * factor * cos(angle) * reference_value(material, values, "cohesion")};
+}
+
+struct multipliers {
+    double cone, apex;
+};
+
+/* Cone alone, or cone and apex where both multipliers are positive (Mast 2013, eq. 3.96-3.100; J21
+ * with the term 2 k/(3 rho) of an apex that moves). */
+static struct multipliers cone_multipliers(const struct cone *cone, struct elastic e, double k,
+                                           double h, double strength, double norm, double first)
+{
+    const double excess = norm + cone->slope * first - strength;
+    const double shear = 2.0 * e.shear + 2.0 / 3.0 * h;
+    const double along = shear + 2.0 / 3.0 * k + 9.0 * e.bulk * cone->slope * cone->flow;
+    struct multipliers multipliers = {fmax(excess, 0) / along, 0};
+    if (cone->slope > 0 && first > strength / cone->slope) {
+        const double a12 = 9.0 * e.bulk * cone->slope, a22 = 9.0 * e.bulk;
+        const double a21 = 9.0 * e.bulk * cone->flow + 2.0 * k / (3.0 * cone->slope);
+        const double beyond = first - strength / cone->slope;
+        const double determinant = along * a22 - a12 * a21;
+        const double second = (along * beyond - a21 * excess) / determinant;
+        if (second > 0)
+            multipliers = (struct multipliers){(a22 * excess - a12 * beyond) / determinant, second};
+    }
+    return multipliers;
+}
+
+/* Return about the back stress (Mast 2013, eq. 3.69-3.100); not coaxial with the strain, so with
+ * whole tensors. */
+static void update_hardening(const struct material *material, const double *values,
+                             struct reference_history *history, struct reference_update *update)
 {
     const struct elastic e = read_elastic(material, values);
-    const double yield = reference_value(material, values, "yield_stress");
+    const struct cone cone = read_cone(material, values);
     const double k = reference_value(material, values, "isotropic_hardening");
     const double h = reference_value(material, values, "kinematic_hardening");
     if (update->finite_strain) {
@@ -294,20 +335,30 @@ static void update_j2(const struct material *material, const double *values,
     struct tensor s = tensor_scale(tensor_deviator(update->strain), 2.0 * e.shear);
     const struct tensor eta = tensor_add(s, -2.0 / 3.0 * h, history->kinematic);
     const double norm = sqrt(tensor_dot(eta, eta));
-    const double excess = norm - sqrt(2.0 / 3.0) * (yield + k * history->isotropic);
+    const double first = 3.0 * e.bulk * tensor_trace(update->strain);
+    const double strength = cone.strength + sqrt(2.0 / 3.0) * k * history->isotropic;
+    const struct multipliers m = cone_multipliers(&cone, e, k, h, strength, norm, first);
     update->plastic = update->dissipation = 0;
-    if (excess > 0) {
-        const double multiplier = excess / (2.0 * e.shear + 2.0 / 3.0 * (h + k));
-        const struct tensor n = tensor_scale(eta, 1.0 / norm);
-        s = tensor_add(s, -2.0 * e.shear * multiplier, n);
-        update->strain = tensor_add(update->strain, -multiplier, n);
-        history->kinematic = tensor_add(history->kinematic, multiplier, n);
-        history->isotropic += sqrt(2.0 / 3.0) * multiplier;
-        update->plastic = multiplier;
+    if (m.cone > 0 || m.apex > 0) {
+        const struct tensor n = tensor_scale(eta, norm > 0 ? 1.0 / norm : 0.0);
+        const double spherical = cone.flow * m.cone + m.apex;
+        s = tensor_add(s, -2.0 * e.shear * m.cone, n);
+        update->strain =
+            tensor_add(tensor_add(update->strain, -m.cone, n), -spherical, tensor_unit());
+        history->kinematic = tensor_add(history->kinematic, m.cone, n);
+        history->isotropic += sqrt(2.0 / 3.0) * m.cone;
+        update->plastic = sqrt(m.cone * m.cone + 3.0 * spherical * spherical);
         const struct tensor left = tensor_add(s, -2.0 / 3.0 * h, history->kinematic);
-        update->dissipation = sqrt(tensor_dot(left, left)) * multiplier;
+        update->dissipation =
+            tensor_dot(left, n) * m.cone + (first - 9.0 * e.bulk * spherical) * spherical;
     }
     update->stress = tensor_add(s, e.bulk * tensor_trace(update->strain), tensor_unit());
+}
+
+/* J2 and the cone that hardens, whose history is a tensor. */
+static bool hardens(const struct material *material)
+{
+    return strcmp(material->name, "j2") == 0 || strcmp(material->name, "drucker_prager") == 0;
 }
 
 /* tau = K ln J 1 + 2 mu J d (Mast 2013, sec. 6.1). */
@@ -342,14 +393,14 @@ bool reference_material_known(const struct material *material)
         if (strcmp(principal_models[index].name, material->name) == 0)
             return true;
     }
-    return strcmp(material->name, "j2") == 0 || strcmp(material->name, "newtonian_fluid") == 0;
+    return hardens(material) || strcmp(material->name, "newtonian_fluid") == 0;
 }
 
 void reference_material_update(const struct material *material, const double *values,
                                struct reference_history *history, struct reference_update *update)
 {
-    if (strcmp(material->name, "j2") == 0) {
-        update_j2(material, values, history, update);
+    if (hardens(material)) {
+        update_hardening(material, values, history, update);
     } else if (strcmp(material->name, "newtonian_fluid") == 0) {
         update_fluid(material, values, update);
     } else {
@@ -370,7 +421,7 @@ double reference_material_energy(const struct material *material, const double *
     const struct tensor deviator = tensor_deviator(strain);
     double energy = 0.5 * bulk * tensor_trace(strain) * tensor_trace(strain) +
                     shear * tensor_dot(deviator, deviator);
-    if (strcmp(material->name, "j2") == 0)
+    if (hardens(material))
         energy += reference_value(material, values, "kinematic_hardening") / 3.0 *
                   tensor_dot(history->kinematic, history->kinematic);
     return energy;

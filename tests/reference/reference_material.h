@@ -12,8 +12,8 @@
 struct material;
 
 struct reference_history {
-    double isotropic;        /* a_iso of J2 */
-    struct tensor kinematic; /* a_kin of J2 */
+    double isotropic;        /* a_iso of the models that harden linearly */
+    struct tensor kinematic; /* their a_kin */
     double measure;          /* lambda of the mobilised models, unscaled */
     double first;            /* their I1 at the end of the last step [Pa] */
 };

@@ -21,17 +21,21 @@ static double deviator_norm(const struct trial_state *state)
     return sym3_norm(sym3_deviator(state->stress));
 }
 
-/* State 0 is the isotropic variable, states 1 ... 6 the back strain. */
-static double j2_surface(const struct trial_state *state)
+/* |s - 2/3 H a_kin|; state 0 is the isotropic variable, states 1 ... 6 the back strain. */
+static double relative_norm(const struct trial_state *state)
 {
     const double *back = state->history + 1;
     struct sym3 back_strain = {back[0], back[1], back[2], back[3], back[4], back[5]};
-    struct sym3 relative =
-        sym3_add_scaled(sym3_deviator(state->stress),
-                        -2.0 / 3.0 * value_of(state, "kinematic_hardening"), back_strain);
+    double hardening = value_of(state, "kinematic_hardening");
+    return sym3_norm(
+        sym3_add_scaled(sym3_deviator(state->stress), -2.0 / 3.0 * hardening, back_strain));
+}
+
+static double j2_surface(const struct trial_state *state)
+{
     double yield = value_of(state, "yield_stress") +
                    value_of(state, "isotropic_hardening") * state->history[0];
-    return sym3_norm(relative) - sqrt(2.0 / 3.0) * yield;
+    return relative_norm(state) - sqrt(2.0 / 3.0) * yield;
 }
 
 /* Slope of the cone through the compression corners of Mohr-Coulomb. */
@@ -45,6 +49,20 @@ static double cone_slope_of(const struct trial_state *state)
 {
     double slope = value_of(state, "cone_slope");
     return isnan(slope) ? outer_slope(value_of(state, "friction_angle")) : slope;
+}
+
+/* The cone about the back stress and the cut-off at its apex. */
+static double drucker_prager_surface(const struct trial_state *state)
+{
+    double angle = value_of(state, "friction_angle") / degrees;
+    double slope = cone_slope_of(state);
+    double strength =
+        isnan(value_of(state, "cone_strength"))
+            ? sqrt(2.0 / 3.0) * 6.0 * value_of(state, "cohesion") * cos(angle) / (3.0 - sin(angle))
+            : value_of(state, "cone_strength");
+    strength += sqrt(2.0 / 3.0) * value_of(state, "isotropic_hardening") * state->history[0];
+    double cone = relative_norm(state) + slope * trace_of(state) - strength;
+    return fmax(cone, slope > 0.0 ? trace_of(state) - strength / slope : cone);
 }
 
 /* The cone up to its tangent point, the circle about the origin beyond. */
@@ -122,6 +140,12 @@ static double matsuoka_nakai_surface(const struct trial_state *state)
 const struct trial_model trial_models[] = {
     {"j2", "j2", {ELASTIC, {"yield_stress", 5e3}, {"isotropic_hardening", 2e5}, {"kinematic_hardening", 4e5}}, j2_surface, false},
     {"j2, perfectly plastic", "j2", {ELASTIC, {"yield_stress", 5e3}}, j2_surface, false},
+    {"cone", "drucker_prager", {ELASTIC, {"friction_angle", 25.0}, {"cohesion", 2e3}, {"dilation_angle", 15.0}, {"isotropic_hardening", 2e5}, {"kinematic_hardening", 4e5}}, drucker_prager_surface, false},
+    {"cone, no cohesion, no dilation", "drucker_prager", {ELASTIC, {"friction_angle", 30.0}}, drucker_prager_surface, false},
+    {"cone, no friction", "drucker_prager", {ELASTIC, {"cone_slope", 0.0}, {"cone_strength", 4e3}, {"flow_ratio", 0.0}, {"isotropic_hardening", 3e5}}, drucker_prager_surface, false},
+    {"cone, associated, isotropic hardening", "drucker_prager", {ELASTIC, {"cone_slope", 0.3}, {"cone_strength", 4e3}, {"flow_ratio", 1.0}, {"isotropic_hardening", 1e7}}, drucker_prager_surface, false},
+    {"cone, contraction", "drucker_prager", {ELASTIC, {"friction_angle", 25.0}, {"cohesion", 2e3}, {"dilation_angle", -15.0}, {"isotropic_hardening", 2e5}, {"kinematic_hardening", 4e5}}, drucker_prager_surface, false},
+    {"cone, contraction, no cohesion", "drucker_prager", {ELASTIC, {"friction_angle", 35.0}, {"flow_slope", -0.1}}, drucker_prager_surface, false},
     {"cap", "drucker_prager_cap", {ELASTIC, {"friction_angle", 25.0}, {"cone_strength", 4e3}, {"flow_ratio", 0.05}}, cap_surface, false},
     {"cap, no dilation", "drucker_prager_cap", {ELASTIC, {"friction_angle", 35.0}, {"cone_strength", 1.0}}, cap_surface, false},
     {"cap, associated", "drucker_prager_cap", {ELASTIC, {"cone_slope", 0.4}, {"cone_strength", 4e3}, {"flow_slope", 0.4}}, cap_surface, false},
