@@ -27,6 +27,8 @@ DATA_LISTS = {
     "server/job_columns.def",
     "server/job_states.def",
     "solver/base/messages.def",
+    "solver/materials/cone_parameters.def",
+    "solver/materials/hardening_parameters.def",
     "solver/materials/mobilised_parameters.def",
     "solver/state/particle_fields.def",
     "tests/benchmark/operation_counts.def",
