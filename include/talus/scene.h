@@ -42,7 +42,12 @@ struct talus_grid {
     double outside_mass_limit; /* [-] share of the initial mass that may be eliminated outside */
 };
 
-enum talus_stress_update { TALUS_STRESS_MODIFIED_LAST, TALUS_STRESS_LAST };
+enum talus_stress_update {
+    TALUS_STRESS_MODIFIED_LAST,
+    TALUS_STRESS_LAST,
+    TALUS_STRESS_FIRST,
+    TALUS_STRESS_UPDATE_COUNT
+};
 enum talus_strain { TALUS_STRAIN_FINITE, TALUS_STRAIN_SMALL };
 enum talus_precision { TALUS_PRECISION_DOUBLE, TALUS_PRECISION_SINGLE };
 enum talus_anti_locking_control { TALUS_CONTROL_NONE, TALUS_CONTROL_CELL };

@@ -3,6 +3,13 @@
 
 #include <string.h>
 
+/* A face that may let go at all. */
+static bool may_release(const struct contact *contact, const struct wall_face *face)
+{
+    return face->release &&
+           !(contact->constraints_only && vector_dot(contact->pushed, face->normal) > 0);
+}
+
 /* The active face that pushes least beyond what it needs to stay; node count if all do. */
 static size_t find_released(const struct contact *contact, const bool active[NODE_FACE_MAX])
 {
@@ -10,7 +17,7 @@ static size_t find_released(const struct contact *contact, const bool active[NOD
     double least = 0;
     for (size_t place = 0; place < contact->node->count; place++) {
         const struct wall_face *face = contact_face(contact, place);
-        if (!active[place] || !face->release)
+        if (!active[place] || !may_release(contact, face))
             continue;
         const double excess = vector_dot(contact->impulse[place], face->normal) -
                               face->tension_force * contact->time_step;
@@ -55,7 +62,8 @@ static void find_alone(struct contact *contact, const double reach[3], bool *act
     for (size_t axis = 0; axis < 3 && face->moves; axis++)
         speed += normal[axis] * contact_face_speed(contact, face, axis);
     const double excess = vector_dot(reach, normal) - speed;
-    *active = !face->release || -contact->mass * excess > face->tension_force * contact->time_step;
+    *active = !may_release(contact, face) ||
+              -contact->mass * excess > face->tension_force * contact->time_step;
     span->rank = *active ? 1 : 0;
     span->speed[0] = speed;
     for (size_t axis = 0; axis < 3; axis++) {

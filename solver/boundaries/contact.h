@@ -16,6 +16,9 @@ struct contact {
     double free_velocity[3]; /* [m/s] w: after the whole force of the step, without walls */
     double acceleration_increment[3]; /* [m/s] dt f/m, without walls */
     bool at_rest;                     /* takes the walls as if they stood still */
+    bool constraints_only; /* leave out friction, which is an impulse of the step; one-sided faces
+                              hold where they pushed in the step before */
+    double pushed[3];      /* constraints_only: impulse of the step before [N s] */
     /* out */
     double velocity[3];               /* that strains and moves the material */
     double handed_velocity[3];        /* that the particles' increment must lead to; differs from

@@ -39,6 +39,8 @@ static void find_resistance(const struct contact *contact, const bool active[NOD
         const struct wall_face *face = contact_face(contact, place);
         const struct wall_grip grip = grip_of(contact, place);
         const double limit = condition->tangential_limit(face, &grip);
+        if (contact->constraints_only && !isinf(limit))
+            continue;
         resistance->limit[place] = limit;
         if (condition->tangential_drag != NULL)
             resistance->drag[place] = condition->tangential_drag(face, &grip);

@@ -141,7 +141,8 @@ static void collect_slot(struct run *run, uint32_t block_index, struct block_scr
     record->slot = (uint32_t)slot;
     record->eliminated = eliminated;
     memset(record->force_stress, 0, sizeof record->force_stress);
-    for (size_t component = 0; component < run->strain_components; component++)
+    for (size_t component = 0; run->scatters & SCATTER_FORCE && component < run->strain_components;
+         component++)
         record->force_stress[component] =
             scratch->reference_volume[slot] * source->stress[component][slot];
     scratch->reference_volume[slot] = 0;
@@ -181,21 +182,32 @@ static void collect_crossers(struct run *run, const struct particle_block *block
     }
 }
 
-void advance_strain(struct run *run, struct block_scratch *scratch, struct particle_block *block,
-                    struct tile_sums *sums, bool still)
+/* What the nodes' update says about velocities and motion, and what `more` asks for. */
+static void gather_motion(struct run *run, struct block_scratch *scratch,
+                          const struct particle_block *block, unsigned more, bool still)
 {
-    const double time_step = still ? 0.0 : run->time_step;
-    const struct shape_context context = run_shape_context(run, time_step);
+    const struct shape_context context = run_shape_context(run, still ? 0.0 : run->time_step);
     const size_t count = (size_t)block->row_count * LANE_COUNT;
-    const bool corrects = run->scene.solver.stress_update == TALUS_STRESS_LAST ||
-                          block->constrained || run->scene.solver.local_damping > 0;
+    const bool corrects =
+        !run_kicks(run) || block->constrained || run->scene.solver.local_damping > 0;
     run->kernels->gather(&context, block,
-                         GATHER_DISPLACEMENT | GATHER_GRADIENT |
-                             (corrects && !still ? GATHER_CORRECTION : 0U),
+                         GATHER_DISPLACEMENT | more | (corrects && !still ? GATHER_CORRECTION : 0U),
                          scratch);
     if (run->scene.solver.pic_rate > 0 && !still)
         blend_velocity(run, block, scratch, count);
     record_displacement(run, block, scratch, count);
+}
+
+void advance_strain(struct run *run, struct block_scratch *scratch, struct particle_block *block,
+                    struct tile_sums *sums, bool still)
+{
+    const double time_step = still ? 0.0 : run->time_step;
+    if (run->scene.solver.stress_update == TALUS_STRESS_FIRST && !still) {
+        const struct shape_context context = run_shape_context(run, time_step);
+        run->kernels->gather(&context, block, GATHER_GRADIENT, scratch);
+    } else {
+        gather_motion(run, scratch, block, GATHER_GRADIENT, still);
+    }
     fetch_portion(&scratch->ahead);
     stage_clock_lap(scratch->clock, STAGE_GATHER);
     const double jacobian = kinematics_advance(run, block, scratch, time_step);
@@ -224,15 +236,14 @@ void advance_stress(struct run *run, struct block_scratch *scratch, struct parti
     stage_clock_lap(scratch->clock, STAGE_STORE);
 }
 
-void advance_finish(struct run *run, struct block_scratch *scratch, uint32_t block_index,
-                    struct tile *tile, struct tile_sums *sums, bool still)
+/* Moves the particles of a block whose energy is in scratch if it is to be measured, and leaves
+ * mass, momentum and forces at the nodes. */
+static void carry(struct run *run, struct block_scratch *scratch, uint32_t block_index,
+                  struct tile *tile, struct tile_sums *sums, bool still,
+                  struct scatter_source *source)
 {
     struct particle_block *block = &run->grid.blocks[block_index];
     const size_t count = (size_t)block->row_count * LANE_COUNT;
-    struct scatter_source source;
-    source_init(run, block, scratch, &source);
-    if (run->scene.solver.viscous_damping > 0)
-        damp_bulk(run, block, scratch, count, &source, sums);
     const struct reach reach = move(run, block, scratch, count);
     run_note_speed(run, scratch->materials, reach.speed_squared, sums);
     if (run->measures) {
@@ -241,14 +252,56 @@ void advance_finish(struct run *run, struct block_scratch *scratch, uint32_t blo
         stage_clock_lap(scratch->clock, STAGE_ENERGY_CHECK);
     }
     if (!still && (block->eliminates || !(reach.position <= 0.5)))
-        collect_crossers(run, block, block_index, scratch, count, &source, tile);
+        collect_crossers(run, block, block_index, scratch, count, source, tile);
     while (scratch->ahead.next < scratch->ahead.end)
         fetch_portion(&scratch->ahead);
     stage_clock_lap(scratch->clock, STAGE_MOVE);
     const struct shape_context context = run_shape_context(run, run->time_step);
-    run->kernels->scatter(&context, block, &source, run->scatters);
+    run->kernels->scatter(&context, block, source, run->scatters);
     if (run->force_count > 0)
-        run_scatter_forces(run, block, source.mass, 0, count, scratch,
+        run_scatter_forces(run, block, source->mass, 0, count, scratch,
                            still ? run->time : run->time + run->time_step);
     stage_clock_lap(scratch->clock, STAGE_SCATTER);
+}
+
+/* The stress in scratch as the nodes feel it: with bulk damping. */
+static void damped_source(const struct run *run, const struct particle_block *block,
+                          struct block_scratch *scratch, struct tile_sums *sums,
+                          struct scatter_source *source)
+{
+    source_init(run, block, scratch, source);
+    if (run->scene.solver.viscous_damping > 0)
+        damp_bulk(run, block, scratch, (size_t)block->row_count * LANE_COUNT, source, sums);
+}
+
+void advance_finish(struct run *run, struct block_scratch *scratch, uint32_t block_index,
+                    struct tile *tile, struct tile_sums *sums, bool still)
+{
+    struct scatter_source source;
+    damped_source(run, &run->grid.blocks[block_index], scratch, sums, &source);
+    carry(run, scratch, block_index, tile, sums, still, &source);
+}
+
+void advance_forces(struct run *run, struct block_scratch *scratch, struct particle_block *block,
+                    struct tile_sums *sums)
+{
+    const struct shape_context context = run_shape_context(run, run->time_step);
+    struct scatter_source source;
+    damped_source(run, block, scratch, sums, &source);
+    run->kernels->scatter(&context, block, &source, SCATTER_FORCE);
+    stage_clock_lap(scratch->clock, STAGE_SCATTER);
+}
+
+void advance_move(struct run *run, struct block_scratch *scratch, uint32_t block_index,
+                  struct tile *tile, struct tile_sums *sums)
+{
+    struct particle_block *block = &run->grid.blocks[block_index];
+    struct scatter_source source;
+    source_init(run, block, scratch, &source);
+    gather_motion(run, scratch, block, 0, false);
+    stage_clock_lap(scratch->clock, STAGE_GATHER);
+    scratch->materials = material_stage_present(run, block);
+    if (run->measures)
+        kinematics_load(run, block, scratch);
+    carry(run, scratch, block_index, tile, sums, false, &source);
 }

@@ -14,6 +14,13 @@ void advance_strain(struct run *run, struct block_scratch *scratch, struct parti
 /* Stress out of the trial strains into scratch, and what it leaves behind in the particles. */
 void advance_stress(struct run *run, struct block_scratch *scratch, struct particle_block *block,
                     struct tile_sums *sums, bool still);
+/* `first`: scatters the forces of the stress in scratch at the positions that strained. */
+void advance_forces(struct run *run, struct block_scratch *scratch, struct particle_block *block,
+                    struct tile_sums *sums);
+/* `first`: corrects the velocities, gathers the motion of the step, and ends like advance_finish,
+ * without forces. */
+void advance_move(struct run *run, struct block_scratch *scratch, uint32_t block_index,
+                  struct tile *tile, struct tile_sums *sums);
 /* Moves the particles by scratch->displacement, sums, puts those that left their cells into the
  * tile's outbox, and scatters the rest. */
 void advance_finish(struct run *run, struct block_scratch *scratch, uint32_t block_index,

@@ -7,8 +7,7 @@
 #include <assert.h>
 #include <string.h>
 
-/* Bit set of the materials with particles in the block. */
-static uint64_t materials_present(const struct run *run, const struct particle_block *block)
+uint64_t material_stage_present(const struct run *run, const struct particle_block *block)
 {
     if (block->body == NULL || run->scene.material_count == 1)
         return (uint64_t)1 << run->body_material[0];
@@ -176,7 +175,7 @@ struct material_outcome material_stage_run(struct run *run, const struct particl
     struct material_outcome outcome = {.flowed = false, .dissipated = false};
     const size_t count = (size_t)block->row_count * LANE_COUNT;
     const bool smooths = run->scene.solver.anti_locking != TALUS_CONTROL_NONE;
-    const uint64_t present = materials_present(run, block);
+    const uint64_t present = material_stage_present(run, block);
     scratch->materials = present;
     const bool single = is_single(present);
     if (!single)
@@ -207,7 +206,7 @@ void material_stage_energy(const struct run *run, const struct particle_block *b
                            struct block_scratch *scratch, real *energy)
 {
     const size_t count = (size_t)block->row_count * LANE_COUNT;
-    const uint64_t present = materials_present(run, block);
+    const uint64_t present = material_stage_present(run, block);
     real *history[SCRATCH_HISTORY_MAX] = {NULL};
     history_arrays(run, block, history);
     struct material_batch batch = {.count = count,

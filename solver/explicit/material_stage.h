@@ -13,6 +13,9 @@ struct material_outcome {
     size_t fall_backs; /* cells in which a linear fit was not possible */
 };
 
+/* Bit set of the materials with particles in a block. */
+uint64_t material_stage_present(const struct run *run, const struct particle_block *block);
+
 /* Reads the kinematics in scratch; writes strain, stress, plastic_strain, dissipation, the history
  * of the particles, and the averaged volumetric parts into the stored strain. */
 struct material_outcome material_stage_run(struct run *run, const struct particle_block *block,

@@ -42,6 +42,9 @@ static inline size_t node_chunk_count(const struct run *run)
 /* Before the first pass: holds back what walls hold, at wall nodes begin ... end - 1. `factor` is
  * the share of gravity that acts. */
 void wall_nodes_hold_back(struct run *run, size_t begin, size_t end, double factor);
+/* Before a stress pass: what the walls let pass of the velocities at wall nodes begin ... end - 1.
+ * Nothing is booked: no particle is pushed. */
+void wall_nodes_start(struct run *run, size_t begin, size_t end);
 /* Applies the walls at the wall nodes of a chunk and sums what they did into its partial. */
 void wall_nodes_update(struct run *run, size_t chunk, double factor);
 /* Adds the chunks in order, to faces, boundaries and the audit. */

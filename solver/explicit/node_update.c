@@ -84,12 +84,46 @@ void run_kick_nodes(struct run *run)
     kick_nodes(run, factor);
 }
 
-/* Momentum -> velocity before the walls; local damping goes into the correction. With `last` the
+/* P/m without walls. */
+static void start_block(struct run *run, size_t block)
+{
+    const struct node_blocks *nodes = &run->grid.nodes;
+    const struct inertia inertia = inertia_of(run, block);
+    for (uint32_t axis = 0; axis < run->grid.domain.axis_count; axis++) {
+        const lanes momentum = lanes_load(node_values(nodes, block, nodes->layout.momentum + axis));
+        lanes_store(node_values(nodes, block, nodes->layout.velocity + axis),
+                    lanes_keep(inertia.moves, momentum * inertia.inverse_mass));
+    }
+}
+
+static void start_nodes(struct run *run)
+{
+#pragma omp for schedule(static)
+    for (size_t block = 0; block < run->grid.nodes.count; block++)
+        start_block(run, block);
+#pragma omp for schedule(static)
+    for (size_t chunk = 0; chunk < wall_chunk_count(run); chunk++) {
+        const size_t begin = chunk * WALL_CHUNK, end = begin + WALL_CHUNK;
+        wall_nodes_start(run, begin, end < run->wall_node_count ? end : run->wall_node_count);
+    }
+}
+
+void run_start_nodes(struct run *run)
+{
+    if (run->threads == 1) {
+        start_nodes(run);
+        return;
+    }
+#pragma omp parallel num_threads(run->threads)
+    start_nodes(run);
+}
+
+/* Momentum -> velocity before the walls; local damping goes into the correction. Without a kick the
  * velocity before the step is P/m and the whole increment is the correction. */
 static void update_block(struct run *run, size_t block, double factor)
 {
     const struct node_blocks *nodes = &run->grid.nodes;
-    const bool last = run->scene.solver.stress_update == TALUS_STRESS_LAST;
+    const bool last = !run_kicks(run);
     const real damping = (real)run->scene.solver.local_damping;
     const struct inertia inertia = inertia_of(run, block);
     for (uint32_t axis = 0; axis < run->grid.domain.axis_count; axis++) {
@@ -117,7 +151,7 @@ static void update_block(struct run *run, size_t block, double factor)
 static void sum_damping(const struct run *run, size_t block, double factor, struct node_sums *sums)
 {
     const struct node_blocks *nodes = &run->grid.nodes;
-    const bool last = run->scene.solver.stress_update == TALUS_STRESS_LAST;
+    const bool last = !run_kicks(run);
     const real *mass = node_values(nodes, block, nodes->layout.mass);
     for (uint32_t axis = 0; axis < run->grid.domain.axis_count; axis++) {
         const real *correction = node_values(nodes, block, nodes->layout.correction + axis);

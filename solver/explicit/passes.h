@@ -16,7 +16,11 @@ pass_tile kick_tile;
 /* Everything from the nodes' velocities to the forces at the new positions, block by block; the
  * tile's sums start from zero. */
 pass_tile advance_tile;
-/* The same at rest: stress of the initial state, its masses and forces. */
+/* `first`: from the nodes' velocities to the forces at the same positions; the tile's sums start
+ * from zero. Then, with the velocities after these forces, to the new positions. */
+pass_tile stress_tile;
+pass_tile move_tile;
+/* The same as advance_tile at rest: stress of the initial state, its masses and forces. */
 pass_tile start_tile;
 
 #endif

@@ -10,7 +10,11 @@
  *                   positions for the next step
  *   re-bin          particles that left their cell
  * and of `last`: update nodes from the P_i, m_i, f_i of the step before, then the second pass,
- * which scatters P_i too. */
+ * which scatters P_i too. `first` strains before that with the P_i and m_i of the step before:
+ *   start velocities v_i = what walls let pass of P_i / m_i
+ *   stress pass      strain with v_i; stress; f_i at the same positions
+ *   update nodes     as `last`
+ *   move pass        v_p += sum N c_i; move with v_i; m_i and P_i at the new positions */
 #ifndef TALUS_RUN_H
 #define TALUS_RUN_H
 
@@ -189,6 +193,12 @@ static inline struct shape_context run_shape_context(struct run *run, double tim
                               time_step);
 }
 
+/* Particles take the nodes' increment before the nodes' new velocity is known; otherwise after. */
+static inline bool run_kicks(const struct run *run)
+{
+    return run->scene.solver.stress_update == TALUS_STRESS_MODIFIED_LAST;
+}
+
 /* Index of the material of a slot. */
 static inline size_t material_of_slot(const struct run *run, const struct particle_block *block,
                                       size_t slot)
@@ -220,6 +230,8 @@ void run_book_forces(struct run *run, double factor);
 
 /* ---- node_update.c ---- */
 void run_kick_nodes(struct run *run);
+/* Velocity at the start of the step, which strains the material of `first`. */
+void run_start_nodes(struct run *run);
 void run_update_nodes(struct run *run);
 
 /* ---- rebin.c ---- */

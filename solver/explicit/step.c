@@ -74,6 +74,24 @@ static void count_crossers(const struct run *run, struct stage_clock *clock)
         clock->crossers += run->grid.tiles[index].outbox_count;
 }
 
+/* The passes in the order of `stress_update`. */
+static void take_passes(struct run *run, struct stage_clock *clock)
+{
+    const bool first = run->scene.solver.stress_update == TALUS_STRESS_FIRST;
+    if (run_kicks(run)) {
+        run_kick_nodes(run);
+        stage_clock_lap(clock, STAGE_KICK_NODES);
+        run_pass(run, kick_tile);
+    } else if (first) {
+        run_start_nodes(run);
+        stage_clock_lap(clock, STAGE_KICK_NODES);
+        run_pass(run, stress_tile);
+    }
+    run_update_nodes(run);
+    stage_clock_lap(clock, STAGE_UPDATE_NODES);
+    run_pass(run, first ? move_tile : advance_tile);
+}
+
 enum talus_status run_take_step(struct run *run, struct talus_error *error)
 {
     struct stage_clock *clock = run->scratch[0].clock;
@@ -85,16 +103,9 @@ enum talus_status run_take_step(struct run *run, struct talus_error *error)
     }
     partition_outbox(run);
     stage_clock_lap(clock, STAGE_HOUSEKEEPING);
-    if (run->scene.solver.stress_update == TALUS_STRESS_MODIFIED_LAST) {
-        run_kick_nodes(run);
-        stage_clock_lap(clock, STAGE_KICK_NODES);
-        run_pass(run, kick_tile);
-    }
-    run_update_nodes(run);
-    stage_clock_lap(clock, STAGE_UPDATE_NODES);
     run->measures = run->sample_expected || health_checks_energy(run->step + 1);
     run->sample_expected = false;
-    run_pass(run, advance_tile);
+    take_passes(run, clock);
     run->time += run->time_step;
     run->interval += run->time_step;
     run->last_time_step = run->time_step;
@@ -111,7 +122,9 @@ enum talus_status run_take_step(struct run *run, struct talus_error *error)
         run_book_energy(run);
     count_crossers(run, clock);
     stage_clock_lap(clock, STAGE_HOUSEKEEPING);
-    status = run_rebin(run, error);
+    status = health_check_deformation(run, &sums, error);
+    if (status == TALUS_OK)
+        status = run_rebin(run, error);
     stage_clock_lap(clock, STAGE_REBIN);
     if (status == TALUS_OK)
         status = health_check_step(run, &sums, error);

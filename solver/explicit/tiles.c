@@ -87,6 +87,37 @@ static void work_tile(struct run *run, size_t index, struct block_scratch *scrat
     stage_clock_lap(scratch->clock, STAGE_SECOND_PASS);
 }
 
+void stress_tile(struct run *run, size_t index, struct block_scratch *scratch)
+{
+    const struct tile *tile = &run->grid.tiles[index];
+    struct tile_sums *sums = &run->tile_sums[index];
+    stage_clock_lap(scratch->clock, STAGE_WAIT);
+    clear_sums(sums);
+    for (size_t entry = tile->begin; entry < tile->end; entry++) {
+        struct particle_block *block = &run->grid.blocks[run->grid.tile_blocks[entry]];
+        look_ahead(run, entry, scratch);
+        if (block->row_count == 0)
+            continue;
+        advance_strain(run, scratch, block, sums, false);
+        advance_stress(run, scratch, block, sums, false);
+        advance_forces(run, scratch, block, sums);
+    }
+    stage_clock_lap(scratch->clock, STAGE_FIRST_PASS);
+}
+
+void move_tile(struct run *run, size_t index, struct block_scratch *scratch)
+{
+    struct tile *tile = &run->grid.tiles[index];
+    stage_clock_lap(scratch->clock, STAGE_WAIT);
+    for (size_t entry = tile->begin; entry < tile->end; entry++) {
+        const uint32_t block_index = run->grid.tile_blocks[entry];
+        look_ahead(run, entry, scratch);
+        if (run->grid.blocks[block_index].row_count > 0)
+            advance_move(run, scratch, block_index, tile, &run->tile_sums[index]);
+    }
+    stage_clock_lap(scratch->clock, STAGE_SECOND_PASS);
+}
+
 void advance_tile(struct run *run, size_t index, struct block_scratch *scratch)
 {
     work_tile(run, index, scratch, false);

@@ -46,6 +46,28 @@ void wall_nodes_hold_back(struct run *run, size_t begin, size_t end, double fact
     }
 }
 
+void wall_nodes_start(struct run *run, size_t begin, size_t end)
+{
+    const struct node_blocks *nodes = &run->grid.nodes;
+    for (size_t index = begin; index < end; index++) {
+        const struct wall_node *wall = &run->wall_nodes[index];
+        struct contact contact = contact_at(run, wall);
+        contact.constraints_only = true;
+        if (contact.mass <= run->mass_cutoff)
+            continue;
+        for (uint32_t axis = 0; axis < run->grid.domain.axis_count; axis++)
+            contact.free_velocity[axis] = contact.acceleration_increment[axis] =
+                node_values(nodes, wall->block, nodes->layout.velocity + axis)[wall->lane];
+        /* The sign of this velocity alone would let a body at rest open and never close: the strain
+         * would grow with every oscillation of the particles. */
+        memcpy(contact.pushed, wall->impulse, sizeof contact.pushed);
+        contact_solve(&contact);
+        for (uint32_t axis = 0; axis < run->grid.domain.axis_count; axis++)
+            node_values(nodes, wall->block, nodes->layout.velocity + axis)[wall->lane] =
+                (real)contact.velocity[axis];
+    }
+}
+
 static void add_face_sums(const struct run *run, const struct wall_node *wall,
                           const struct contact *contact, double *partial)
 {
@@ -82,7 +104,7 @@ static void enter_wall(struct run *run, const struct wall_node *wall, double fac
                        struct contact *contact, struct wall_passage *passage, double *damping_sums)
 {
     const struct node_blocks *nodes = &run->grid.nodes;
-    const bool last = run->scene.solver.stress_update == TALUS_STRESS_LAST;
+    const bool last = !run_kicks(run);
     free_increment(run, wall, contact->mass, factor, contact->acceleration_increment);
     for (uint32_t axis = 0; axis < run->grid.domain.axis_count; axis++) {
         const double whole = contact->acceleration_increment[axis];

@@ -155,6 +155,12 @@ static enum talus_status report_speed(const struct run *run, struct talus_error 
                            run->time, (unsigned long long)run->step, advice(run));
 }
 
+enum talus_status health_check_deformation(const struct run *run, const struct tile_sums *sums,
+                                           struct talus_error *error)
+{
+    return sums->least_jacobian <= 0 ? report_inverted(run, sums, error) : TALUS_OK;
+}
+
 enum talus_status health_check_step(struct run *run, const struct tile_sums *sums,
                                     struct talus_error *error)
 {

@@ -21,8 +21,14 @@ TALUS_MUST_CHECK enum talus_status health_check_outside(const struct run *run,
 /* Does the step of that number end with a look at the energy? */
 bool health_checks_energy(uint64_t step);
 
-/* After the second pass: det of the incremental deformation gradient, speeds, and, when the speed
- * has jumped or every 16 steps, energy against the work done. */
+/* Before particles change cells, so that the first that goes wrong is named: det of the incremental
+ * deformation gradient. */
+TALUS_MUST_CHECK enum talus_status health_check_deformation(const struct run *run,
+                                                            const struct tile_sums *sums,
+                                                            struct talus_error *error);
+
+/* At the end of a step: speeds, and, when the speed has jumped or every 16 steps, energy against
+ * the work done. */
 TALUS_MUST_CHECK enum talus_status health_check_step(struct run *run, const struct tile_sums *sums,
                                                      struct talus_error *error);
 

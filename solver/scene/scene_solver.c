@@ -16,8 +16,7 @@ static const char *const shape_lacking[] = {"gimp",        "gimp_scaled", "cpdi"
                                             "cpdi_hybrid", "quadratic",   NULL};
 static const char *const transfer_words[] = {"flip", NULL};
 static const char *const transfer_lacking[] = {"pic", "apic", NULL};
-static const char *const stress_words[] = {"modified_last", "last", NULL};
-static const char *const stress_lacking[] = {"first", NULL};
+static const char *const stress_words[] = {"modified_last", "last", "first", NULL};
 static const char *const strain_words[] = {"finite", "small", NULL};
 static const char *const strain_lacking[] = {"rate", NULL};
 static const char *const control_words[] = {"none", "cell", NULL};
@@ -143,7 +142,6 @@ const struct scene_field scene_solver_fields[] = {
      .kind = SCENE_CHOICE,
      .unit = "1",
      .choices = stress_words,
-     .lacking = stress_lacking,
      .offset = AT(stress_update),
      .meaning = "when the stress is updated in a step, and with which velocity"},
     {.key = "theta",

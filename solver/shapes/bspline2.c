@@ -38,7 +38,7 @@ const struct shape shape_bspline2 = {
         "quadratic B-splines: smooth forces where particles cross cells, three nodes an axis",
     /* Of a bar with two particles a cell (2.1 and 0.69), lowered as linear functions are from that
      * bar to the least favourable body. */
-    .courant_limit = {1.53, 0.57},
+    .courant_limit = {1.53, 0.57, 1.53},
     .reach = 1,
     .kernels = {&wide_kernels_1, &wide_kernels_2, &wide_kernels_3},
 };

@@ -36,7 +36,7 @@ const struct shape shape_bspline3 = {
     .summary = "cubic B-splines: the smoothest, four nodes an axis",
     /* Of a bar with two particles a cell (2.5 and 0.95), lowered as linear functions are from that
      * bar to the least favourable body. */
-    .courant_limit = {1.82, 0.79},
+    .courant_limit = {1.82, 0.79, 1.82},
     .reach = 1,
     .kernels = {&wide_kernels_1, &wide_kernels_2, &wide_kernels_3},
 };

@@ -12,6 +12,7 @@
 #include "state/nodes.h"
 #include "state/particles.h"
 #include "state/scratch.h"
+#include "talus/scene.h"
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -85,7 +86,7 @@ struct shape {
     const char *name, *reference, *summary;
     /* Largest stable Courant number c dt / h with full cells, per stress ordering (index: enum
      * talus_stress_update); the smallest over the dimensions and particle arrangements known. */
-    double courant_limit[2];
+    double courant_limit[TALUS_STRESS_UPDATE_COUNT];
     /* Cells beyond its own that a particle can reach, at most REACH_MAX (state/sparse_grid.h). */
     uint32_t reach;
     const struct shape_kernels *kernels[3]; /* per dimension: 1, 2, 3 axes */

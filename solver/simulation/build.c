@@ -197,6 +197,12 @@ static enum talus_status build_windows(struct run *run, struct talus_error *erro
     return TALUS_OK;
 }
 
+static unsigned scatters_of(enum talus_stress_update update)
+{
+    const unsigned forces = update == TALUS_STRESS_FIRST ? 0U : SCATTER_FORCE;
+    return SCATTER_MASS | forces | (update == TALUS_STRESS_MODIFIED_LAST ? 0U : SCATTER_MOMENTUM);
+}
+
 enum talus_status run_build(struct run *run, const struct talus_scene *scene,
                             const struct talus_simulation_options *options,
                             struct talus_error *error)
@@ -217,14 +223,12 @@ enum talus_status run_build(struct run *run, const struct talus_scene *scene,
     run_layout(&run->scene, &run->grid.layout);
     run->stored_components = run->grid.layout.component_count[PARTICLE_STRAIN];
     node_layout_init(&run->grid.nodes.layout, scene->axis_count,
-                     scene->solver.stress_update == TALUS_STRESS_LAST);
+                     scene->solver.stress_update != TALUS_STRESS_MODIFIED_LAST);
     run_set_callbacks(run, options);
     run->shape = shape_table[scene->solver.shape_index];
     run->grid.reach = run->shape->reach;
     run->kernels = run->shape->kernels[scene->axis_count - 1];
-    run->scatters = SCATTER_MASS | SCATTER_FORCE;
-    if (scene->solver.stress_update == TALUS_STRESS_LAST)
-        run->scatters |= SCATTER_MOMENTUM;
+    run->scatters = scatters_of(scene->solver.stress_update);
     enum talus_status status = build_materials(run, error);
     if (status == TALUS_OK)
         status = build_walls(run, error);

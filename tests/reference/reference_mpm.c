@@ -265,6 +265,7 @@ static void apply_walls(struct reference *reference, struct reference_node *node
         node->velocity[axis] = contact.velocity[axis];
         node->correction[axis] = contact.handed[axis];
         for (int k = 0; k < reference->wall_count; k++) {
+            node->wall_impulse[axis] += contact.impulse[k][axis];
             reference->wall_impulse[k][axis] -= contact.impulse[k][axis];
             reference->wall_energy -= contact.impulse[k][axis] * contact.velocity[axis];
         }
@@ -274,11 +275,12 @@ static void apply_walls(struct reference *reference, struct reference_node *node
 static void update_node(struct reference *reference, size_t index)
 {
     struct reference_node *node = &reference->nodes[index];
-    const bool last = reference->scene->solver.stress_update == TALUS_STRESS_LAST;
+    const bool last = reference->scene->solver.stress_update != TALUS_STRESS_MODIFIED_LAST;
     double increment[3], before[3];
     bool active[REFERENCE_WALL_MAX];
     memset(node->velocity, 0, sizeof node->velocity);
     memset(node->correction, 0, sizeof node->correction);
+    memset(node->wall_impulse, 0, sizeof node->wall_impulse);
     if (node->mass <= reference->mass_cutoff)
         return;
     free_increment(reference, node, increment);
@@ -302,22 +304,66 @@ static void update_node(struct reference *reference, size_t index)
                                       reference->time_step;
 }
 
+/* Velocity at the start of the step, as far as the walls let it pass. */
+static void start_node(struct reference *reference, size_t index)
+{
+    struct reference_node *node = &reference->nodes[index];
+    struct reference_contact contact;
+    bool active[REFERENCE_WALL_MAX];
+    memset(&contact, 0, sizeof contact);
+    memset(node->velocity, 0, sizeof node->velocity);
+    if (node->mass <= reference->mass_cutoff)
+        return;
+    for (int axis = 0; axis < 3; axis++)
+        node->velocity[axis] = contact.free_velocity[axis] = contact.increment[axis] =
+            node->momentum[axis] / node->mass;
+    if (!find_walls(reference, index, active))
+        return;
+    contact.pushed = node->wall_impulse;
+    reference_contact_solve(reference->walls, reference->wall_count, active, node->mass,
+                            reference->time_step, &contact);
+    memcpy(node->velocity, contact.velocity, sizeof node->velocity);
+}
+
+static void gather_gradients(struct reference *reference)
+{
+    for (size_t k = 0; k < reference->particle_count; k++) {
+        struct reference_particle *p = &reference->particles[k];
+        const struct support support = find_support(reference, p->position);
+        memset(&p->gradient, 0, sizeof p->gradient);
+        p->cell = cell_index(reference, p->position);
+        for (int i = 0; i < support.count; i++) {
+            for (int row = 0; row < 3; row++) {
+                for (int axis = 0; axis < 3; axis++)
+                    p->gradient.m[row][axis] +=
+                        support.node[i]->velocity[row] * support.gradient[i][axis];
+            }
+        }
+    }
+}
+
+/* `first`: strain and stress at the positions of the start, with the velocities of the start. */
+static void update_stress_first(struct reference *reference)
+{
+    for (size_t i = 0; i < reference->node_count; i++)
+        start_node(reference, i);
+    gather_gradients(reference);
+    reference_update_stress(reference, reference->time_step);
+    scatter(reference);
+}
+
 static void move_particles(struct reference *reference)
 {
     const double rate = reference->scene->solver.pic_rate;
     for (size_t k = 0; k < reference->particle_count; k++) {
         struct reference_particle *p = &reference->particles[k];
         const struct support support = find_support(reference, p->position);
-        memset(&p->gradient, 0, sizeof p->gradient);
         memset(p->grid_velocity, 0, sizeof p->grid_velocity);
-        p->cell = cell_index(reference, p->position);
         for (int i = 0; i < support.count; i++) {
             const struct reference_node *node = support.node[i];
             for (int row = 0; row < 3; row++) {
                 p->velocity[row] += support.weight[i] * node->correction[row];
                 p->grid_velocity[row] += support.weight[i] * node->velocity[row];
-                for (int axis = 0; axis < 3; axis++)
-                    p->gradient.m[row][axis] += node->velocity[row] * support.gradient[i][axis];
             }
         }
         for (int axis = 0; axis < 3; axis++) {
@@ -334,10 +380,16 @@ void reference_step(struct reference *reference)
     if (reference->scene->solver.stress_update == TALUS_STRESS_MODIFIED_LAST)
         kick(reference);
     scatter_momentum(reference);
+    const bool first = reference->scene->solver.stress_update == TALUS_STRESS_FIRST;
+    if (first)
+        update_stress_first(reference);
     for (size_t i = 0; i < reference->node_count; i++)
         update_node(reference, i);
+    if (!first)
+        gather_gradients(reference);
     move_particles(reference);
-    reference_update_stress(reference, reference->time_step);
+    if (!first)
+        reference_update_stress(reference, reference->time_step);
     scatter(reference);
     reference->time += reference->time_step;
 }

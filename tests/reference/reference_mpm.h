@@ -27,6 +27,7 @@ struct reference_particle {
 struct reference_node {
     double mass, force[3], momentum[3];
     double kick[3], velocity[3], correction[3];
+    double wall_impulse[3]; /* on the material, in the last step */
 };
 
 struct reference {

@@ -45,14 +45,16 @@ void reference_contact_solve(const struct reference_wall *walls, int wall_count,
     for (int k = 0; k < wall_count; k++) {
         const int axis = walls[k].axis;
         const double push = -mass * reach[axis] * walls[k].normal;
-        if (!active[k] || (walls[k].releases && push <= walls[k].tension_force * time_step))
+        const bool held = contact->pushed != NULL && contact->pushed[axis] * walls[k].normal > 0;
+        if (!active[k] ||
+            (walls[k].releases && !held && push <= walls[k].tension_force * time_step))
             continue;
         contact->velocity[axis] = 0;
         contact->handed[axis] = contact->free_velocity[axis] - reach[axis];
         contact->impulse[k][axis] = push * walls[k].normal;
         if (isinf(walls[k].friction))
             sticking++;
-        else
+        else if (contact->pushed == NULL)
             total += limit[k] = walls[k].friction * fmax(push, 0);
     }
     memcpy(tangent, contact->velocity, sizeof tangent);
@@ -78,7 +80,7 @@ void reference_hold_back(const struct reference_wall *walls, int wall_count, con
                          double mass, double time_step, double increment[3])
 {
     /* A node at rest under this increment alone: what it cannot follow is held back. */
-    struct reference_contact contact;
+    struct reference_contact contact = {.pushed = NULL};
     memcpy(contact.free_velocity, increment, sizeof contact.free_velocity);
     memcpy(contact.increment, increment, sizeof contact.increment);
     reference_contact_solve(walls, wall_count, active, mass, time_step, &contact);

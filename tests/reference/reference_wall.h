@@ -19,6 +19,8 @@ struct reference_wall {
 
 struct reference_contact {
     double free_velocity[3], increment[3]; /* in: w, and dt f/m */
+    const double *pushed; /* in: impulse of the step before, for velocities that no force changes:
+                             no friction, and what pushed still holds; else NULL */
     double velocity[3], handed[3];         /* out */
     double impulse[REFERENCE_WALL_MAX][3]; /* out: on the material */
 };

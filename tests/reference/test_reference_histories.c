@@ -58,6 +58,15 @@ static const struct variant variants[] = {
      TALUS_WALL_STOP, false},
     {"column, solid, last, small", COLUMN, 3, TALUS_STRESS_LAST, TALUS_STRAIN_SMALL,
      TALUS_CONTROL_NONE, TALUS_APPLY_STRAIN, 0, 0, 0, 0, TALUS_WALL_STOP, false},
+    {"column, line, first, finite, keep, ramp", COLUMN, 1, TALUS_STRESS_FIRST, TALUS_STRAIN_FINITE,
+     TALUS_CONTROL_NONE, TALUS_APPLY_STRAIN, 0, 0.1, 0, 0.05, TALUS_WALL_KEEP, false},
+    {"slide, plane strain, first, finite, anti-locking", SLIDE, 2, TALUS_STRESS_FIRST,
+     TALUS_STRAIN_FINITE, TALUS_CONTROL_CELL, TALUS_APPLY_STRAIN_AND_STRESS, 0.1, 0, 5.0, 0,
+     TALUS_WALL_STOP, false},
+    {"slide, plane strain, first, small, release", SLIDE, 2, TALUS_STRESS_FIRST, TALUS_STRAIN_SMALL,
+     TALUS_CONTROL_NONE, TALUS_APPLY_STRAIN, 0.2, 0, 0, 0, TALUS_WALL_STOP, true},
+    {"column, solid, first, finite", COLUMN, 3, TALUS_STRESS_FIRST, TALUS_STRAIN_FINITE,
+     TALUS_CONTROL_NONE, TALUS_APPLY_STRAIN, 0, 0, 0, 0, TALUS_WALL_STOP, false},
 };
 
 /* Side walls and a floor that hold a column which settles under sudden gravity. */

@@ -30,14 +30,13 @@ static void set_motion(struct simulation_fixture *fixture)
 static void test_free_fall_is_exact(void **state)
 {
     (void)state;
-    for (int update = 0; update < 2; update++) {
+    for (int update = 0; update < TALUS_STRESS_UPDATE_COUNT; update++) {
         for (size_t axes = 1; axes <= 3; axes++) {
             struct simulation_fixture fixture;
             build(&fixture, axes);
             set_motion(&fixture);
             fixture.scene.solver.time_step = 5e-4;
-            fixture.scene.solver.stress_update =
-                update ? TALUS_STRESS_LAST : TALUS_STRESS_MODIFIED_LAST;
+            fixture.scene.solver.stress_update = (enum talus_stress_update)update;
             fixture.scene.output.frame_fields = 1u << TALUS_FIELD_STRESS;
             struct talus_simulation *simulation = simulation_fixture_start(&fixture, 1);
             const size_t count = simulation_particle_count(simulation), steps = 400;
@@ -134,7 +133,7 @@ static void test_conservation(void **state)
 {
     (void)state;
     for (size_t index = 0; index < material_count; index++) {
-        for (int update = 0; update < 2; update++) {
+        for (int update = 0; update < TALUS_STRESS_UPDATE_COUNT; update++) {
             struct simulation_fixture fixture;
             static const int64_t count[3] = {30, 30, 20};
             simulation_fixture_init(&fixture, 2, 0.1, count);
@@ -145,8 +144,7 @@ static void test_conservation(void **state)
                                            (double[3]){x + 0.4, 1.3}, 2)
                     ->velocity[0] = body == 0 ? 0.4 : 0.0;
             }
-            fixture.scene.solver.stress_update =
-                update ? TALUS_STRESS_LAST : TALUS_STRESS_MODIFIED_LAST;
+            fixture.scene.solver.stress_update = (enum talus_stress_update)update;
             fixture.scene.solver.anti_locking = TALUS_CONTROL_CELL;
             fixture.scene.solver.viscous_damping = 0.1;
             struct talus_simulation *simulation = simulation_fixture_start(&fixture, 1);

@@ -90,14 +90,13 @@ static void test_inverted(void **state)
 static void test_energy_growth(void **state)
 {
     (void)state;
-    for (int update = 0; update < 2; update++) {
+    for (int update = 0; update < TALUS_STRESS_UPDATE_COUNT; update++) {
         struct simulation_fixture fixture;
         struct talus_error error;
         struct talus_estimate estimate;
         build_block(&fixture, 2, 0);
         fixture.bodies[0].velocity[0] = 0.01;
-        fixture.scene.solver.stress_update =
-            update ? TALUS_STRESS_LAST : TALUS_STRESS_MODIFIED_LAST;
+        fixture.scene.solver.stress_update = (enum talus_stress_update)update;
         simulation_fixture_add_plane(&fixture, "wall", 0, 1.5, -1, "slip", 0);
         assert_int_equal(talus_simulation_estimate(&fixture.scene, &estimate, &error), TALUS_OK);
         fixture.scene.solver.time_step = 2.5 * estimate.critical_time_step;

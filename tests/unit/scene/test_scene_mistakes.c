@@ -70,7 +70,6 @@ static const struct mistake mistakes[] = {
     {BASE_PLANE, "/solver/transfer", "\"apic\"", NULL, "unsupported"},
     {BASE_PLANE, "/solver/pic_rate", "-1", NULL, "range"},
     {BASE_PLANE, "/solver/flip_ratio", "0.99", NULL, "unsupported"},
-    {BASE_PLANE, "/solver/stress_update", "\"first\"", NULL, "unsupported"},
     {BASE_PLANE, "/solver/theta", "0.5", NULL, "unsupported"},
     {BASE_PLANE, "/solver/strain_theta", "0", NULL, "unsupported"},
     {BASE_PLANE, "/solver/strain_theta", "2", NULL, "range"},

@@ -123,11 +123,12 @@ static void compare_all(struct talus_simulation *a, struct talus_simulation *b)
     }
 }
 
-static void goes_on_bit_for_bit(size_t shape)
+static void goes_on_bit_for_bit(size_t shape, enum talus_stress_update update)
 {
     struct simulation_fixture fixture;
     build(&fixture);
     fixture.scene.solver.shape_index = shape;
+    fixture.scene.solver.stress_update = update;
     static const size_t moments[] = {0, 1, 17, 60, 111, 151, 200, 201, 239};
     struct talus_simulation *restored[LENGTH(moments)] = {NULL};
     struct talus_simulation *simulation = simulation_fixture_start(&fixture, 1);
@@ -167,7 +168,8 @@ static void test_goes_on_bit_for_bit(void **state)
 {
     (void)state;
     for (size_t shape = 0; shape < shape_count; shape++)
-        goes_on_bit_for_bit(shape);
+        goes_on_bit_for_bit(shape, TALUS_STRESS_MODIFIED_LAST);
+    goes_on_bit_for_bit(0, TALUS_STRESS_FIRST);
 }
 
 static void test_equal_states_give_equal_bytes(void **state)

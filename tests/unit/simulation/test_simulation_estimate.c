@@ -24,10 +24,9 @@ static void test_critical_step(void **state)
     struct talus_estimate estimate;
     struct talus_error error = {0};
     build(&fixture, 10);
-    const double limits[2] = {1.26, 0.63};
-    for (int update = 0; update < 2; update++) {
-        fixture.scene.solver.stress_update =
-            update ? TALUS_STRESS_LAST : TALUS_STRESS_MODIFIED_LAST;
+    const double limits[TALUS_STRESS_UPDATE_COUNT] = {1.26, 0.63, 1.26};
+    for (int update = 0; update < TALUS_STRESS_UPDATE_COUNT; update++) {
+        fixture.scene.solver.stress_update = (enum talus_stress_update)update;
         assert_int_equal(talus_simulation_estimate(&fixture.scene, &estimate, &error), TALUS_OK);
         const double critical = limits[update] * 0.1 / (sqrt(4000) + 10);
         assert_close(estimate.critical_time_step, critical, 1e-12, critical);
