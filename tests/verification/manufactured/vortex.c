@@ -11,7 +11,7 @@
 #include <math.h>
 
 #define PI 3.14159265358979323846
-#define ANGLE 0.5    /* G [rad] */
+#define ANGLE 0.1    /* G [rad] */
 #define DURATION 2.0 /* T [s] */
 
 /* h and its first two derivatives. */
@@ -112,5 +112,5 @@ const struct manufactured vortex = {
     .velocity = velocity,
     .body_force = body_force,
     .counts = counts,
-    .amplitude = 2 * 0.24740395925452294, /* 2 sin(ANGLE / 2) at R = 1 */
+    .amplitude = 2 * 0.04997916927067833, /* 2 sin(ANGLE / 2) at R = 1 */
 };
