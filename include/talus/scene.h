@@ -243,6 +243,15 @@ struct talus_output_options {
     bool vtu;                /* also write VTU files and a PVD list under vtk */
 };
 
+/* Gravity of one magnitude that is tilted where particles are: a slope on a flat grid. */
+struct talus_slope {
+    double along[3];  /* unit vector, perpendicular to gravity: downhill */
+    double below;     /* [m] holds where the position along `along` is below; NAN: a radius */
+    double about[3];  /* [m] ... or beyond a distance from this point, */
+    double beyond;    /* [m] perpendicular to gravity */
+    double angle_deg; /* by which gravity is tilted towards `along` */
+};
+
 struct talus_scene {
     char *title;
     enum talus_dimension dimension;
@@ -254,7 +263,10 @@ struct talus_scene {
     size_t material_count;
     struct talus_body *bodies;
     size_t body_count;
-    double gravity[3]; /* [m/s^2] */
+    double gravity[3]; /* [m/s^2] with slopes: where none holds */
+    struct talus_time_table gravity_table[3];
+    struct talus_slope *slopes; /* the first that holds counts */
+    size_t slope_count;
     struct talus_boundary *boundaries;
     size_t boundary_count;
     struct talus_probe *probes;

@@ -26,7 +26,7 @@ static inline double node_free_increment(const struct run *run, size_t block, si
     double force = (double)node_values(nodes, block, nodes->layout.force + axis)[lane];
     if (nodes->layout.external != 0)
         force += factor * (double)node_values(nodes, block, nodes->layout.external + axis)[lane];
-    return run->time_step * (force / mass + factor * run->scene.gravity[axis]);
+    return run->time_step * (force / mass + factor * run->gravity[axis]);
 }
 
 static inline size_t wall_chunk_count(const struct run *run)

@@ -38,7 +38,7 @@ static lanes whole_increment(const struct run *run, size_t block, const struct i
         force +=
             (real)factor * lanes_load(node_values(nodes, block, nodes->layout.external + axis));
     return (real)run->time_step *
-           (force * inertia->inverse_mass + (real)(factor * run->scene.gravity[axis]));
+           (force * inertia->inverse_mass + (real)(factor * run->gravity[axis]));
 }
 
 static void kick_block(struct run *run, size_t block, double factor)
@@ -215,30 +215,13 @@ static void book_body_forces(struct run *run, double factor)
     }
     double square = 0;
     for (size_t axis = 0; axis < 3; axis++) {
-        const double impulse = total.mass * factor * run->scene.gravity[axis] * run->time_step +
-                               total.damping_impulse[axis];
+        const double impulse =
+            total.mass * factor * run->gravity[axis] * run->time_step + total.damping_impulse[axis];
         run->audit.impulse[axis] += impulse;
         square += impulse * impulse;
     }
     run->audit.exchanged += sqrt(square);
     run->energy.damping += total.damping_energy;
-}
-
-/* The share of gravity that the ramp holds back is in the potential, and must not be: its work is
- * external. */
-static void book_ramp(struct run *run, double factor)
-{
-    const struct node_blocks *nodes = &run->grid.nodes;
-    double power = 0;
-    for (size_t block = 0; block < nodes->count; block++) {
-        const real *mass = node_values(nodes, block, nodes->layout.mass);
-        for (uint32_t axis = 0; axis < run->grid.domain.axis_count; axis++) {
-            const real *velocity = node_values(nodes, block, nodes->layout.velocity + axis);
-            for (size_t lane = 0; lane < LANE_COUNT; lane++)
-                power += mass[lane] * run->scene.gravity[axis] * velocity[lane];
-        }
-    }
-    run->energy.external -= (1 - factor) * power * run->time_step;
 }
 
 /* Free nodes, then walls; by a team or alone, as kick_nodes. */
@@ -266,8 +249,8 @@ static void book_nodes(struct run *run, double factor)
 {
     book_body_forces(run, factor);
     wall_nodes_sum(run);
-    if (factor < 1)
-        book_ramp(run, factor);
+    if (factor < 1 || run->gravity_deviates)
+        run_book_gravity(run, factor);
     if (run->force_count > 0)
         run_book_forces(run, factor);
 }
@@ -276,7 +259,7 @@ void run_update_nodes(struct run *run)
 {
     const double factor = run_force_factor(run);
     /* Then masses or external forces are still needed after the walls. */
-    const bool kept = factor < 1 || run->force_count > 0;
+    const bool kept = factor < 1 || run->gravity_deviates || run->force_count > 0;
     if (run->threads == 1) {
         update_nodes(run, factor, !kept);
         book_nodes(run, factor);

@@ -137,6 +137,8 @@ struct run {
     size_t
         stored_components; /* of PARTICLE_STRAIN: the same, or 1 if all materials are volumetric */
 
+    double gravity[3];     /* uniform, in this step, without the ramp [m/s^2] */
+    bool gravity_deviates; /* from that of the scene, which the potential energy knows */
     struct run_callbacks callbacks;
     struct particle_force forces[PARTICLE_FORCE_MAX];
     size_t force_count;
@@ -212,6 +214,15 @@ double run_force_factor(const struct run *run);
 /* ---- wall_nodes.c ---- */
 /* Finds the walls of node blocks that are new, and which blocks touch them. 0, or -1. */
 int run_find_walls(struct run *run);
+
+/* ---- gravity.c ---- */
+/* Gravity of the step that begins. */
+void run_set_gravity(struct run *run);
+/* The forces of slopes, if the scene has any. Before there are nodes. */
+void run_add_slopes(struct run *run);
+/* Work of what acts beyond the gravity that the potential knows, or short of it: tables over time,
+ * and the ramp. After the walls. */
+void run_book_gravity(struct run *run, double factor);
 
 /* ---- particle_forces.c ---- */
 /* Takes over what the embedding program adds. Before there are nodes. */

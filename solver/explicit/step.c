@@ -102,6 +102,7 @@ enum talus_status run_take_step(struct run *run, struct talus_error *error)
         return status;
     }
     partition_outbox(run);
+    run_set_gravity(run);
     stage_clock_lap(clock, STAGE_HOUSEKEEPING);
     run->measures = run->sample_expected || health_checks_energy(run->step + 1);
     run->sample_expected = false;

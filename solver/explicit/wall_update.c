@@ -17,7 +17,7 @@ static void free_increment(const struct run *run, const struct wall_node *wall, 
 static struct contact contact_at(const struct run *run, const struct wall_node *wall)
 {
     const struct node_blocks *nodes = &run->grid.nodes;
-    const double *gravity = run->scene.gravity;
+    const double *gravity = run->gravity;
     return (struct contact){
         .faces = run->walls.faces,
         .node = &wall->faces,

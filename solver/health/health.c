@@ -110,7 +110,8 @@ static double cell_lift(const struct run *run)
 {
     double lift = 0;
     for (size_t axis = 0; axis < run->grid.domain.axis_count; axis++)
-        lift += fabs(run->scene.gravity[axis]) * run->grid.domain.cell[axis];
+        lift += fmax(fabs(run->scene.gravity[axis]), fabs(run->gravity[axis])) *
+                run->grid.domain.cell[axis];
     return lift;
 }
 

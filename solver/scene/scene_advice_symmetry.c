@@ -19,6 +19,15 @@ static bool near_scaled(const struct talus_scene *scene, size_t axis, double a, 
     return near(a, b, scene->grid.cell[axis]);
 }
 
+/* True if gravity has a component on the axis somewhere, or depends on the place on it. */
+static bool gravity_acts(const struct talus_scene *scene, size_t axis)
+{
+    bool acts = scene->gravity[axis] != 0.0 || scene->gravity_table[axis].count > 0;
+    for (size_t index = 0; index < scene->slope_count; index++)
+        acts |= scene->slopes[index].along[axis] != 0.0 || isnan(scene->slopes[index].below);
+    return acts;
+}
+
 /* Range of all bodies on an axis; true if every body is a box over all of it. */
 static bool bodies_fill(const struct talus_scene *scene, size_t axis, double range[2])
 {
@@ -62,7 +71,7 @@ void scene_advise_uniform(struct scene_advice *advice)
     const struct talus_scene *scene = advice->scene;
     for (size_t axis = 0; axis < 3 && scene->dimension == TALUS_SOLID; axis++) {
         double range[2] = {0.0, 0.0};
-        bool uniform = scene->gravity[axis] == 0.0 && bodies_fill(scene, axis, range);
+        bool uniform = !gravity_acts(scene, axis) && bodies_fill(scene, axis, range);
         for (size_t index = 0; index < scene->boundary_count && uniform; index++)
             uniform = boundary_is_uniform(&scene->boundaries[index], axis, range);
         /* Free ends move: only between walls is nothing happening along the axis. */
@@ -182,7 +191,7 @@ void scene_advise_mirror(struct scene_advice *advice)
             high = fmax(high, shape.max[axis]);
         }
         double centre = 0.5 * (low + high);
-        if (scene->gravity[axis] != 0.0 || !is_mirror(scene, axis, centre))
+        if (gravity_acts(scene, axis) || !is_mirror(scene, axis, centre))
             continue;
         char detail[128], change[128];
         (void)snprintf(detail, sizeof detail, "the scene is its own mirror image about %c = %g",

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The grid: cells and the box that bounds the problem; gravity. */
+/* The grid: cells and the box that bounds the problem. */
 #include "scene/scene_sections.h"
 
 #include <string.h>
@@ -118,39 +118,4 @@ void scene_grid_read(struct scene_reader *reader, const struct scene_path *path,
 json_t *scene_grid_schema(void)
 {
     return scene_fields_schema(scene_grid_fields);
-}
-
-static const struct scene_field gravity_field = {
-    .key = "gravity",
-    .kind = SCENE_VECTOR,
-    .unit = "m/s^2",
-    .minimum = -1e6,
-    .maximum = 1e6,
-    .meaning = "acceleration",
-};
-
-void scene_gravity_read(struct scene_reader *reader, const struct scene_path *path,
-                        const json_t *given, void *target, json_t *effective)
-{
-    struct talus_scene *scene = target;
-    json_t *value = NULL;
-    bool table = json_is_object(given);
-    for (size_t k = 0; k < json_array_size(given); k++)
-        table |= json_is_array(json_array_get(given, k));
-    if (table) {
-        scene_mistake(reader, path, "unsupported", NULL, NULL,
-                      "slopes and time tables of gravity are not supported by this build");
-        return;
-    }
-    if (given == NULL) {
-        value = scene_zero_vector(reader);
-    } else if (!scene_vector_read(reader, path, &gravity_field, given, scene->gravity, &value)) {
-        return;
-    }
-    scene_put(reader, effective, path->key, value);
-}
-
-json_t *scene_gravity_schema(void)
-{
-    return scene_field_schema(&gravity_field);
 }

@@ -225,6 +225,8 @@ enum talus_status run_build(struct run *run, const struct talus_scene *scene,
     node_layout_init(&run->grid.nodes.layout, scene->axis_count,
                      scene->solver.stress_update != TALUS_STRESS_MODIFIED_LAST);
     run_set_callbacks(run, options);
+    run_add_slopes(run);
+    run_set_gravity(run);
     run->shape = shape_table[scene->solver.shape_index];
     run->grid.reach = run->shape->reach;
     run->kernels = run->shape->kernels[scene->axis_count - 1];

@@ -2,6 +2,7 @@
 #include "simulation/scene_copy.h"
 
 #include "materials/material.h"
+#include "state/time_table.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -81,6 +82,8 @@ int scene_copy(const struct talus_scene *scene, struct talus_scene *copy)
     copy->references = NULL; /* compared outside of the solver */
     copy->material_count = copy->body_count = copy->boundary_count = 0;
     copy->probe_count = copy->reference_count = 0;
+    copy->slopes = duplicate(scene->slopes, scene->slope_count * sizeof *scene->slopes, &failed);
+    failed |= time_table_duplicate(copy->gravity_table, 3) != 0;
     copy->title = duplicate_text(scene->title, &failed);
     copy_materials(scene, copy, &failed);
     copy_named(scene, copy, &failed);

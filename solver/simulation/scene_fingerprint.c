@@ -24,6 +24,15 @@ static void add_reals(uint64_t *hash, const double *values, size_t count)
     add_bytes(hash, values, count * sizeof *values);
 }
 
+static void add_tables(uint64_t *hash, const struct talus_time_table *tables, size_t count)
+{
+    for (size_t index = 0; index < count; index++) {
+        add_number(hash, tables[index].count);
+        add_reals(hash, tables[index].time, tables[index].count);
+        add_reals(hash, tables[index].value, tables[index].count);
+    }
+}
+
 static void add_text(uint64_t *hash, const char *text)
 {
     for (; text != NULL && *text != '\0'; text++)
@@ -57,6 +66,15 @@ static void add_solver(uint64_t *hash, const struct talus_scene *scene)
     add_number(hash, (uint64_t)solver->precision);
     add_reals(hash, reals, sizeof reals / sizeof reals[0]);
     add_reals(hash, scene->gravity, 3);
+    add_tables(hash, scene->gravity_table, 3);
+    add_number(hash, scene->slope_count);
+    for (size_t index = 0; index < scene->slope_count; index++) {
+        const struct talus_slope *slope = &scene->slopes[index];
+        const double zone[] = {slope->below, slope->beyond, slope->angle_deg};
+        add_reals(hash, slope->along, 3);
+        add_reals(hash, slope->about, 3);
+        add_reals(hash, zone, sizeof zone / sizeof zone[0]);
+    }
     add_number(hash, scene->output.frame_fields);
 }
 

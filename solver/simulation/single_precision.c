@@ -3,6 +3,7 @@
 
 #include "seeding/seeding.h"
 #include "seeding/seeding_shape.h"
+#include "state/time_table.h"
 
 #include <math.h>
 
@@ -87,7 +88,11 @@ static double force_noise(const struct run *run, double time_step, double gravit
 
 struct single_precision single_precision_estimate(const struct run *run, double time_step)
 {
-    const double gravity = length_of(run->scene.gravity);
+    double largest[3];
+    for (size_t axis = 0; axis < 3; axis++)
+        largest[axis] =
+            time_table_largest(&run->scene.gravity_table[axis], run->scene.gravity[axis]);
+    const double gravity = length_of(largest);
     return (struct single_precision){.motion_error = motion_error(run, time_step, gravity),
                                      .force_noise = force_noise(run, time_step, gravity)};
 }

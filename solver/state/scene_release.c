@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
+#include "state/time_table.h"
 #include "talus/scene.h"
 
 #include <stdlib.h>
@@ -26,6 +27,8 @@ void talus_scene_release(struct talus_scene *scene)
         free(scene->references[index].value);
         free(scene->references[index].of_job);
     }
+    time_table_release(scene->gravity_table, 3);
+    free(scene->slopes);
     free(scene->materials);
     free(scene->bodies);
     free(scene->boundaries);

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 #include "state/time_table.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -36,6 +37,14 @@ void time_table_vector(const struct talus_time_table tables[3], const double con
 {
     for (size_t axis = 0; axis < 3; axis++)
         value[axis] = time_table_value(&tables[axis], constant[axis], time);
+}
+
+double time_table_largest(const struct talus_time_table *table, double constant)
+{
+    double largest = table->count == 0 ? fabs(constant) : 0.0;
+    for (size_t point = 0; point < table->count; point++)
+        largest = fmax(largest, fabs(table->value[point]));
+    return largest;
 }
 
 bool time_table_varies(const struct talus_time_table *tables, size_t count)

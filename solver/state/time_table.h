@@ -13,6 +13,9 @@ double time_table_value(const struct talus_time_table *table, double constant, d
 void time_table_vector(const struct talus_time_table tables[3], const double constant[3],
                        double time, double value[3]);
 
+/* Largest magnitude at any time. */
+double time_table_largest(const struct talus_time_table *table, double constant);
+
 /* True if any of `count` tables has points. */
 bool time_table_varies(const struct talus_time_table *tables, size_t count);
 

@@ -20,6 +20,7 @@ struct mistake {
     const char *code;
 };
 
+#define SLOPE(REST) "{\"magnitude\": 10, \"up\": [0, 1], \"slopes\": [{\"angle\": 20, " REST "}]}"
 #define BODY(REST) "{\"name\": \"heap\", \"material\": \"soil\", " REST "}"
 
 static const struct mistake mistakes[] = {
@@ -41,9 +42,23 @@ static const struct mistake mistakes[] = {
     {BASE_PLANE, "/phases", "[]", NULL, "unsupported"},
     {BASE_PLANE, "/gravity", "[0, -9.81, 0]", NULL, "length"},
     {BASE_PLANE, "/gravity", "[0, \"down\"]", "/gravity/1", "type"},
-    {BASE_PLANE, "/gravity", "{\"magnitude\": 10, \"up\": [0, 1], \"slopes\": []}", NULL,
-     "unsupported"},
-    {BASE_PLANE, "/gravity", "[0, [[0, 0], [1, -9.81]]]", NULL, "unsupported"},
+    {BASE_PLANE, "/gravity", "[0, [[0, -9], [1, \"-9.81\"]]]", "/gravity/1/1/1", "type"},
+    {BASE_PLANE, "/gravity", "[0, [[0, -9], [1]]]", "/gravity/1/1", "type"},
+    {BASE_PLANE, "/gravity", "[[], -9.81]", "/gravity/0", "length"},
+    {BASE_PLANE, "/gravity", "[0, [[1, -9], [1, -9.81]]]", "/gravity/1/1/0", "range"},
+    {BASE_PLANE, "/gravity", "{\"magnitude\": 10, \"up\": [0, 1]}", "/gravity/slopes", "required"},
+    {BASE_PLANE, "/gravity", "{\"magnitude\": 10, \"up\": [0, 0], \"slopes\": []}", "/gravity/up",
+     "range"},
+    {BASE_PLANE, "/gravity", SLOPE("\"along\": [1, 0.1], \"below\": 3"), "/gravity/slopes/0/along",
+     "contradiction"},
+    {BASE_PLANE, "/gravity", SLOPE("\"along\": [1, 0]"), "/gravity/slopes/0/below", "required"},
+    {BASE_PLANE, "/gravity",
+     SLOPE("\"along\": [1, 0], \"below\": 3, \"beyond\": 3, \"about\": [0, 0]"),
+     "/gravity/slopes/0/beyond", "contradiction"},
+    {BASE_PLANE, "/gravity", SLOPE("\"along\": [1, 0], \"beyond\": 3"), "/gravity/slopes/0/about",
+     "required"},
+    {BASE_PLANE, "/gravity", SLOPE("\"along\": [1, 0], \"below\": 3, \"about\": [0, 0]"),
+     "/gravity/slopes/0/about", "contradiction"},
     {BASE_PLANE, "/audits", "{\"energy_growth\": -1}", "/audits/energy_growth", "range"},
     {BASE_PLANE, "/audits", "{\"energy_grow\": 1}", "/audits/energy_grow", "unknown_key"},
     /* ---- grid ---- */
