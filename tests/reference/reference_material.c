@@ -2,6 +2,7 @@
 #include "reference_material.h"
 
 #include "materials/material.h"
+#include "yield_planes.h"
 
 #include <math.h>
 #include <string.h>
@@ -236,6 +237,56 @@ static void matsuoka_nakai_return(const struct material *material, const double 
     }
 }
 
+/* From peak to residual over the plastic shear strain at the start of the step. */
+static double softened(const struct material *material, const double *values,
+                       const struct reference_history *history, const char *peak,
+                       const char *residual)
+{
+    const double top = reference_value(material, values, peak);
+    const double rest = reference_value(material, values, residual);
+    if (isnan(rest))
+        return top;
+    return rest + (top - rest) *
+                      exp(-reference_value(material, values, "softening_rate") * history->shear);
+}
+
+static void tresca_return(const struct material *material, const double *values,
+                          struct reference_history *history, double stress[3])
+{
+    const struct elastic e = read_elastic(material, values);
+    const double cohesion = softened(material, values, history, "cohesion", "residual_cohesion");
+    const struct yield_planes planes =
+        yield_planes_of(e.bulk, e.shear, 0.0, 0.0, cohesion, INFINITY);
+    (void)yield_planes_return(&planes, stress);
+}
+
+static void mohr_coulomb_return(const struct material *material, const double *values,
+                                struct reference_history *history, double stress[3])
+{
+    const struct elastic e = read_elastic(material, values);
+    const double cohesion = softened(material, values, history, "cohesion", "residual_cohesion");
+    const double friction =
+        softened(material, values, history, "friction_angle", "residual_friction_angle");
+    const double dilation = reference_value(material, values, "dilation_angle");
+    const double tension = reference_value(material, values, "tensile_strength");
+    const double apex = cohesion / tan(friction * M_PI / 180.0);
+    const struct yield_planes planes = yield_planes_of(
+        e.bulk, e.shear, friction, fmin(dilation, friction), cohesion, fmin(tension, apex));
+    (void)yield_planes_return(&planes, stress);
+}
+
+/* K ln J + G (l_k^2 - mean) J^(-2/3) of the principal stretches l; `stress` comes as the linear law
+ * has it. */
+static void neo_hookean_stress(struct elastic e, const double strain[3], double stress[3])
+{
+    const double mean = first_invariant(strain) / 3.0;
+    double square[3];
+    for (int k = 0; k < 3; k++)
+        square[k] = expm1(2.0 * (strain[k] - mean)); /* l_k^2 - 1: only differences count */
+    for (int k = 0; k < 3; k++)
+        stress[k] = 3.0 * e.bulk * mean + e.shear * (square[k] - first_invariant(square) / 3.0);
+}
+
 /* A return in principal space, from the trial strain to the new elastic strain. */
 static void update_principal(const struct material *material, const double *values,
                              struct reference_history *history, struct reference_update *update,
@@ -244,7 +295,7 @@ static void update_principal(const struct material *material, const double *valu
 {
     const struct elastic e = read_elastic(material, values);
     struct spectrum strain = tensor_spectrum(update->strain), stress = strain;
-    double trial[3], square = 0, work = 0;
+    double trial[3], square = 0, work = 0, high = 0, low = 0;
     memcpy(trial, strain.value, sizeof trial);
     principal_stress(e, strain.value, stress.value);
     double before[3];
@@ -255,6 +306,8 @@ static void update_principal(const struct material *material, const double *valu
         for (int k = 0; k < 3; k++) {
             const double increment = trial[k] - strain.value[k];
             square += increment * increment;
+            high = k == 0 ? increment : fmax(high, increment);
+            low = k == 0 ? increment : fmin(low, increment);
             work += stress.value[k] * increment;
         }
     }
@@ -263,6 +316,7 @@ static void update_principal(const struct material *material, const double *valu
     update->plastic = sqrt(square);
     update->dissipation = fmax(work, 0.0);
     history->measure += sqrt(square);
+    history->shear += high - low;
     history->first = first_invariant(stress.value);
 }
 
@@ -375,6 +429,15 @@ static void update_fluid(const struct material *material, const double *values,
     update->dissipation = factor * tensor_dot(rate, rate) * update->time_step;
 }
 
+static void update_neo_hookean(const struct material *material, const double *values,
+                               struct reference_update *update)
+{
+    struct spectrum strain = tensor_spectrum(update->strain), stress = strain;
+    neo_hookean_stress(read_elastic(material, values), strain.value, stress.value);
+    update->stress = tensor_from_spectrum(&stress);
+    update->plastic = update->dissipation = 0;
+}
+
 static const struct {
     const char *name;
     void (*stress_return)(const struct material *, const double *, struct reference_history *,
@@ -384,6 +447,8 @@ static const struct {
     {"drucker_prager_cap", cap_return},
     {"drucker_prager_mobilised", mobilised_cone_return},
     {"matsuoka_nakai", matsuoka_nakai_return},
+    {"mohr_coulomb", mohr_coulomb_return},
+    {"tresca", tresca_return},
 };
 enum { PRINCIPAL_COUNT = sizeof principal_models / sizeof principal_models[0] };
 
@@ -393,7 +458,8 @@ bool reference_material_known(const struct material *material)
         if (strcmp(principal_models[index].name, material->name) == 0)
             return true;
     }
-    return hardens(material) || strcmp(material->name, "newtonian_fluid") == 0;
+    return hardens(material) || strcmp(material->name, "newtonian_fluid") == 0 ||
+           strcmp(material->name, "neo_hookean") == 0;
 }
 
 void reference_material_update(const struct material *material, const double *values,
@@ -403,12 +469,30 @@ void reference_material_update(const struct material *material, const double *va
         update_hardening(material, values, history, update);
     } else if (strcmp(material->name, "newtonian_fluid") == 0) {
         update_fluid(material, values, update);
+    } else if (strcmp(material->name, "neo_hookean") == 0) {
+        update_neo_hookean(material, values, update);
     } else {
         int index = 0;
         while (strcmp(principal_models[index].name, material->name) != 0)
             index++;
         update_principal(material, values, history, update, principal_models[index].stress_return);
     }
+}
+
+/* (tr b' - 3)/2 */
+static double neo_hookean_shape(struct tensor deviator)
+{
+    const struct spectrum strain = tensor_spectrum(deviator);
+    double sum = 0; /* of exp(2 e) - 1 - 2 e: the e add up to nothing */
+    for (int k = 0; k < 3; k++) {
+        const double x = 2.0 * strain.value[k];
+        double term = 0.5 * x * x;
+        for (int n = 3; n < 60; n++) {
+            sum += term;
+            term *= x / n;
+        }
+    }
+    return 0.5 * sum;
 }
 
 double reference_material_energy(const struct material *material, const double *values,
@@ -419,6 +503,9 @@ double reference_material_energy(const struct material *material, const double *
         return 0.5 * bulk * strain.m[0][0] * strain.m[0][0];
     const double shear = reference_value(material, values, "shear_modulus");
     const struct tensor deviator = tensor_deviator(strain);
+    if (strcmp(material->name, "neo_hookean") == 0) /* tr b' - 3 by strains of any size */
+        return 0.5 * bulk * tensor_trace(strain) * tensor_trace(strain) +
+               shear * neo_hookean_shape(deviator);
     double energy = 0.5 * bulk * tensor_trace(strain) * tensor_trace(strain) +
                     shear * tensor_dot(deviator, deviator);
     if (hardens(material))

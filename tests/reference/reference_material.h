@@ -16,6 +16,7 @@ struct reference_history {
     struct tensor kinematic; /* their a_kin */
     double measure;          /* lambda of the mobilised models, unscaled */
     double first;            /* their I1 at the end of the last step [Pa] */
+    double shear;            /* sum of largest minus smallest principal plastic strain increments */
 };
 
 struct reference_update {

@@ -61,9 +61,10 @@ void fixture_init_sample(struct fixture *fixture, const struct material *materia
 {
     static const struct {
         const char *name;
-        struct setting settings[10];
+        struct setting settings[12];
     } samples[] = {
         {"linear_elastic", {ELASTIC}},
+        {"neo_hookean", {ELASTIC}},
         {"newtonian_fluid", {{"density", 1000.0}, {"bulk_modulus", 5e6}, {"viscosity", 200.0}}},
         {"j2",
          {ELASTIC,
@@ -97,6 +98,17 @@ void fixture_init_sample(struct fixture *fixture, const struct material *materia
           {"friction.a4", 15.0},
           {"friction.a5", 200.0},
           {"cohesion", 1e3}}},
+        {"mohr_coulomb",
+         {ELASTIC,
+          {"friction_angle", 25.0},
+          {"dilation_angle", 10.0},
+          {"cohesion", 1e3},
+          {"tensile_strength", 5e2},
+          {"residual_friction_angle", 20.0},
+          {"residual_cohesion", 2e2},
+          {"softening_rate", 20.0}}},
+        {"tresca",
+         {ELASTIC, {"cohesion", 4e3}, {"residual_cohesion", 1e3}, {"softening_rate", 20.0}}},
     };
     for (size_t sample = 0; sample < LENGTH(samples); sample++) {
         if (strcmp(samples[sample].name, material->name) != 0)

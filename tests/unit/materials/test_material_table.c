@@ -137,6 +137,12 @@ struct mistake {
         "friction.a0", 30.0                                                                        \
     }
 
+#define FRICTION                                                                                   \
+    SOLID, {"friction_angle", 30.0},                                                               \
+    {                                                                                              \
+        "cohesion", 1e3                                                                            \
+    }
+
 static const struct mistake mistakes[] = {
     {"linear_elastic",
      {{"density", 1.0}, {"bulk_modulus", 1.0}, {"poisson_ratio", 0.2}},
@@ -172,6 +178,26 @@ static const struct mistake mistakes[] = {
     {"matsuoka_nakai",
      {SOLID, {"friction_angle", 0.0}, {"cohesion", 10.0}},
      "cohesion",
+     "contradiction"},
+    {"newtonian_fluid",
+     {{"density", 1000.0}, {"bulk_modulus", 2e6}, {"exponent", 7.0}},
+     "exponent",
+     "contradiction"},
+    {"mohr_coulomb", {FRICTION, {"dilation_angle", 31.0}}, "dilation_angle", "contradiction"},
+    {"mohr_coulomb", {FRICTION, {"tensile_strength", 1.8e3}}, "tensile_strength", "contradiction"},
+    {"mohr_coulomb",
+     {FRICTION, {"residual_friction_angle", 31.0}, {"softening_rate", 1.0}},
+     "residual_friction_angle",
+     "contradiction"},
+    {"mohr_coulomb", {FRICTION, {"residual_cohesion", 500.0}}, "softening_rate", "required"},
+    {"mohr_coulomb", {FRICTION, {"softening_rate", 1.0}}, "softening_rate", "contradiction"},
+    {"tresca",
+     {SOLID, {"cohesion", 1e3}, {"residual_cohesion", 1.1e3}, {"softening_rate", 1.0}},
+     "residual_cohesion",
+     "contradiction"},
+    {"tresca",
+     {SOLID, {"cohesion", 1e3}, {"softening_rate", 1.0}},
+     "softening_rate",
      "contradiction"},
 };
 

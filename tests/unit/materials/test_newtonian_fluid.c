@@ -65,11 +65,60 @@ static void test_no_tension(void **context)
     }
 }
 
+/* p = K/gamma (J^-gamma - 1), times J; the energy against its closed form, where that has digits,
+ * and against K/2 (ln J)^2 of small strains; the strain of a stress. */
+static void check_tait(double exponent, double no_tension)
+{
+    const double strains[8] = {-0.3, -0.02, -1e-8, 0.0, 1e-8, 0.02, 0.3, -0.1};
+    const struct setting settings[] = {{"density", 1000.0},
+                                       {"bulk_modulus", 2e6},
+                                       {"equation_of_state", 1.0},
+                                       {"exponent", exponent},
+                                       {"no_tension", no_tension}};
+    const double gamma = isnan(exponent) ? 7.0 : exponent;
+    struct fixture fixture;
+    struct slots slots;
+    double energy[8];
+    fixture_init(&fixture, "newtonian_fluid", settings, LENGTH(settings));
+    slots_init(&slots, 8, 4);
+    memcpy(slots.batch.strain[0], strains, sizeof strains);
+    fixture.material->update_stress(fixture.constants, &slots.batch);
+    fixture.material->strain_energy(fixture.constants, &slots.batch, energy);
+    for (size_t slot = 0; slot < 8; slot++) {
+        double strain = no_tension != 0.0 ? fmin(strains[slot], 0.0) : strains[slot];
+        double volume = exp(strain);
+        double pressure = 2e6 / gamma * expm1(-gamma * strain);
+        double stress = slots.batch.stress[1][slot];
+        double work = gamma == 1.0 ? volume - 1.0 - strain
+                                   : (pow(volume, 1.0 - gamma) - gamma) / (gamma - 1.0) + volume;
+        double expected = fabs(strain) > 1e-3 ? 2e6 / gamma * work : 1e6 * strain * strain;
+        assert_true(fabs(stress + volume * pressure) <= 1e-13 * fabs(pressure));
+        assert_true(fabs(energy[slot] - expected) <= 1e-7 * expected);
+        double mean[SYM3_COMPONENTS] = {stress, stress, stress};
+        double back[SYM3_COMPONENTS];
+        fixture.material->strain_from_stress(fixture.constants, mean, back);
+        assert_true(fabs(back[0] - strain) <= 1e-14);
+    }
+    assert_true(fabs(fixture.material->wave_speed(fixture.constants) - sqrt(2e3)) < 1e-12);
+    slots_release(&slots);
+    fixture_release(&fixture);
+}
+
+static void test_tait(void **context)
+{
+    (void)context;
+    check_tait(NAN, 0.0); /* 7 */
+    check_tait(7.0, 1.0);
+    check_tait(1.0, 0.0);
+    check_tait(2.5, 0.0);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_stress),
         cmocka_unit_test(test_no_tension),
+        cmocka_unit_test(test_tait),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -124,6 +124,37 @@ static double matsuoka_nakai_surface(const struct trial_state *state)
     return fmax((kappa * a * b * c - (a + b + c) * (a * b + b * c + c * a)) / square / kappa, a);
 }
 
+/* From peak to residual; NAN: no residual value. */
+static double softened(const struct trial_state *state, const char *peak, const char *residual)
+{
+    double top = value_of(state, peak);
+    double rest = value_of(state, residual);
+    if (isnan(rest))
+        return top;
+    return rest + (top - rest) * exp(-value_of(state, "softening_rate") * state->history[0]);
+}
+
+static double tresca_surface(const struct trial_state *state)
+{
+    double cohesion = softened(state, "cohesion", "residual_cohesion");
+    return (state->principal[0] - state->principal[2] - 2.0 * cohesion) / sqrt(2.0);
+}
+
+/* Shear plane as its normal's length makes it, tension up to its strength and the apex. */
+static double mohr_coulomb_surface(const struct trial_state *state)
+{
+    double sine = sin(softened(state, "friction_angle", "residual_friction_angle") / degrees);
+    double cohesion = softened(state, "cohesion", "residual_cohesion");
+    double tension = value_of(state, "tensile_strength");
+    double high = state->principal[0];
+    double low = state->principal[2];
+    double cosine = sqrt(1.0 - sine * sine);
+    double shear = (high - low) + (high + low) * sine - 2.0 * cohesion * cosine;
+    double apex = sine > 0.0 ? cohesion * cosine / sine : INFINITY;
+    double limit = isnan(tension) ? apex : fmin(tension, apex);
+    return fmax(shear / sqrt(2.0 + 2.0 * sine * sine), high - limit);
+}
+
 #define ELASTIC                                                                                    \
     {"density", 2000.0}, {"bulk_modulus", 5e6},                                                    \
     {                                                                                              \
@@ -157,6 +188,14 @@ const struct trial_model trial_models[] = {
     {"matsuoka-nakai, softening", "matsuoka_nakai", {ELASTIC, SOFTENING, {"friction.a5", 200.0}, {"cohesion", 1e3}}, matsuoka_nakai_surface, true},
     {"matsuoka-nakai, no dilation", "matsuoka_nakai", {ELASTIC, {"friction_angle", 30.0}}, matsuoka_nakai_surface, true},
     {"matsuoka-nakai, contraction", "matsuoka_nakai", {ELASTIC, {"friction_angle", 30.0}, {"dilation_angle", -20.0}, {"cohesion", 1e3}}, matsuoka_nakai_surface, true},
+    {"mohr-coulomb", "mohr_coulomb", {ELASTIC, {"friction_angle", 30.0}, {"dilation_angle", 10.0}, {"cohesion", 3e3}}, mohr_coulomb_surface, true},
+    {"mohr-coulomb, associated", "mohr_coulomb", {ELASTIC, {"friction_angle", 40.0}, {"dilation_angle", 40.0}, {"cohesion", 3e3}, {"tensile_strength", 1e3}}, mohr_coulomb_surface, true},
+    {"mohr-coulomb, no cohesion", "mohr_coulomb", {ELASTIC, {"friction_angle", 35.0}}, mohr_coulomb_surface, true},
+    {"mohr-coulomb, no friction", "mohr_coulomb", {ELASTIC, {"friction_angle", 0.0}, {"cohesion", 3e3}, {"tensile_strength", 0.0}}, mohr_coulomb_surface, true},
+    {"mohr-coulomb, softening", "mohr_coulomb", {ELASTIC, {"friction_angle", 35.0}, {"dilation_angle", 30.0}, {"cohesion", 3e3}, {"tensile_strength", 2e3}, {"residual_friction_angle", 20.0}, {"residual_cohesion", 0.0}, {"softening_rate", 30.0}}, mohr_coulomb_surface, true},
+    {"mohr-coulomb, steep", "mohr_coulomb", {ELASTIC, {"friction_angle", 89.0}, {"cohesion", 3e3}}, mohr_coulomb_surface, true},
+    {"tresca", "tresca", {ELASTIC, {"cohesion", 4e3}}, tresca_surface, true},
+    {"tresca, softening", "tresca", {ELASTIC, {"cohesion", 4e3}, {"residual_cohesion", 0.0}, {"softening_rate", 30.0}}, tresca_surface, true},
 };
 /* clang-format on */
 const size_t trial_model_count = LENGTH(trial_models);

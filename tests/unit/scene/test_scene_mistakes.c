@@ -110,7 +110,6 @@ static const struct mistake mistakes[] = {
     /* ---- materials ---- */
     {BASE_PLANE, "/materials/soil/model", NULL, NULL, "required"},
     {BASE_PLANE, "/materials/soil/model", "\"sand\"", NULL, "unknown_value"},
-    {BASE_PLANE, "/materials/soil/model", "\"tresca\"", NULL, "unsupported"},
     {BASE_PLANE, "/materials/soil/density", NULL, NULL, "required"},
     {BASE_PLANE, "/materials/soil/density", "0", NULL, "range"},
     {BASE_PLANE, "/materials/soil/density", "1e31", NULL, "range"},
@@ -124,8 +123,9 @@ static const struct mistake mistakes[] = {
     {BASE_PLANE, "/materials/soil/cone_fit", "\"middle\"", NULL, "unknown_value"},
     {BASE_SOLID, "/materials/rubber/poisson_ratio", "0.5", NULL, "range"},
     {BASE_SOLID, "/materials/rubber/friction_angle", "30", NULL, "unknown_key"},
-    {BASE_FLUID, "/materials/water/exponent", "7", NULL, "unsupported"},
-    {BASE_FLUID, "/materials/water/equation_of_state", "\"tait\"", NULL, "unsupported"},
+    {BASE_FLUID, "/materials/water/exponent", "7", NULL, "contradiction"},
+    {BASE_FLUID, "/materials/water/exponent", "0.9", NULL, "range"},
+    {BASE_FLUID, "/materials/water/equation_of_state", "\"van_der_waals\"", NULL, "unknown_value"},
     {BASE_FLUID, "/materials/water/no_tension", "\"yes\"", NULL, "type"},
     {BASE_PLANE, "/materials/soil",
      "{\"model\": \"matsuoka_nakai\", \"density\": 2000,"
@@ -136,6 +136,15 @@ static const struct mistake mistakes[] = {
      "\"bulk_modulus\": 1e7, \"shear_modulus\": 5e6, \"friction\": {\"a0\": 35},"
      "\"friction_angle\": 30}",
      "/materials/soil/friction", "contradiction"},
+    {BASE_PLANE, "/materials/soil",
+     "{\"model\": \"mohr_coulomb\", \"density\": 2000,"
+     "\"bulk_modulus\": 1e7, \"shear_modulus\": 5e6, \"friction_angle\": 30, \"cohesion\": 1e3,"
+     "\"tensile_strength\": 2e3}",
+     "/materials/soil/tensile_strength", "contradiction"},
+    {BASE_PLANE, "/materials/soil",
+     "{\"model\": \"tresca\", \"density\": 2000, \"bulk_modulus\": 1e7, \"shear_modulus\": 5e6,"
+     "\"cohesion\": 1e3, \"residual_cohesion\": 500}",
+     "/materials/soil/softening_rate", "required"},
     {BASE_PLANE, "/materials/soil", "[]", NULL, "type"},
     {BASE_PLANE, "/materials", "[]", NULL, "type"},
     /* ---- bodies ---- */

@@ -7,11 +7,15 @@ SOIL = {"density": 2000, "bulk_modulus": 8.33e6, "shear_modulus": 3.85e6}
 MOBILISED = {**SOIL, "friction": {"a0": 35, "a1": 9, "a3": 0.3, "a4": 10, "strain_scale": 100}}
 MATERIALS = {
     "linear_elastic": {"density": 1000, "young_modulus": 5e5, "poisson_ratio": 0.3},
+    "neo_hookean": {"density": 1000, "young_modulus": 5e5, "poisson_ratio": 0.3},
     "newtonian_fluid": {"density": 1000, "bulk_modulus": 2e6, "viscosity": 0.1},
     "j2": {**SOIL, "yield_stress": 2e4, "isotropic_hardening": 1e4},
     "drucker_prager_cap": {**SOIL, "friction_angle": 20, "cone_strength": 10, "flow_ratio": 0.05},
     "drucker_prager_mobilised": MOBILISED,
     "matsuoka_nakai": MOBILISED,
+    "mohr_coulomb": {**SOIL, "friction_angle": 30, "dilation_angle": 5, "cohesion": 100,
+                     "residual_friction_angle": 20, "softening_rate": 20},
+    "tresca": {**SOIL, "cohesion": 5e3, "residual_cohesion": 2e3, "softening_rate": 20},
 }
 
 
