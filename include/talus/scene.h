@@ -169,6 +169,7 @@ struct talus_boundary {
     double moment_about[3]; /* [m] */
     bool area_source_rule;  /* h^2 a node (Mast 7.15) instead of tributary areas */
     int body_index;         /* acts on this body only; -1: on all */
+    bool internal;          /* the solver's own, of which nothing is reported */
 };
 
 /* Fields that can be read from particles; the table is talus/fields.def. */

@@ -111,6 +111,15 @@ static void add_face(struct node_faces *faces, size_t face, double area)
     faces->area[faces->count++] = area;
 }
 
+/* Length of the circle through the middle of the stretch that a node stands for along x, of which
+ * one half may be missing. */
+static double node_circle(const struct domain *domain, int32_t node, bool inner_missing,
+                          bool outer_missing)
+{
+    const double shift = 0.25 * domain->cell[0] * ((int)inner_missing - (int)outer_missing);
+    return domain_circle(domain, fmax(0.0, domain_node_position(domain, 0, node) + shift));
+}
+
 /* Area that a node represents on a surface normal to `axis` which spans lines low..high. */
 static double tributary_area(const struct domain *domain, size_t axis, const int32_t node[3],
                              const int32_t low[3], const int32_t high[3], bool source_rule)
@@ -124,7 +133,8 @@ static double tributary_area(const struct domain *domain, size_t axis, const int
         if (!source_rule && (node[other] == low[other] || node[other] == high[other]))
             area *= 0.5;
     }
-    return area;
+    const bool cut = axis != 0 && !source_rule;
+    return area * node_circle(domain, node[0], cut && node[0] == low[0], cut && node[0] == high[0]);
 }
 
 static void box_faces(const struct wall_shape *shape, const struct domain *domain,
@@ -183,8 +193,8 @@ static void plane_faces(const struct wall_shape *shape, const struct domain *dom
     const double distance = along(shape->normal, shape->point, position);
     if (distance > 0.5 * width)
         return;
-    const double area =
-        domain_cell_volume(domain) / fmax(width, 1e-300); /* one node per cell width */
+    const double area = node_circle(domain, node[0], false, false) * domain_cell_volume(domain) /
+                        fmax(width, 1e-300); /* one node per cell width */
     add_face(faces, shape->first_face, distance > -0.5 * width ? area : 0.0);
 }
 
@@ -201,15 +211,20 @@ static void rectangle_faces(const struct wall_shape *shape, const struct domain 
         return;
     const double smallest = domain_smallest_cell(domain);
     double area = domain_cell_volume(domain) / fmax(width, 1e-300);
+    double missing = 0; /* on this side along x nothing of the face belongs to the node */
     const double *axes[2] = {shape->axis_1, shape->axis_2};
     for (size_t index = 0; index + 1 < domain->axis_count; index++) {
-        const double offset = fabs(along(axes[index], shape->point, position));
-        if (offset > 0.5 * shape->size[index] + LINE_TOLERANCE * smallest)
+        const double offset = along(axes[index], shape->point, position);
+        if (fabs(offset) > 0.5 * shape->size[index] + LINE_TOLERANCE * smallest)
             return;
-        if (!shape->source_rule && offset > 0.5 * shape->size[index] - LINE_TOLERANCE * smallest)
-            area *= 0.5;
+        if (shape->source_rule ||
+            fabs(offset) <= 0.5 * shape->size[index] - LINE_TOLERANCE * smallest)
+            continue;
+        area *= 0.5;
+        missing = offset * axes[index][0];
     }
-    add_face(faces, shape->first_face, area);
+    add_face(faces, shape->first_face,
+             area * node_circle(domain, node[0], missing < 0, missing > 0));
 }
 
 void wall_set_node_faces(const struct wall_set *walls, const struct domain *domain,

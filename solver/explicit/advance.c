@@ -4,6 +4,7 @@
 #include "antilocking/anti_locking.h"
 #include "explicit/kinematics.h"
 #include "explicit/material_stage.h"
+#include "explicit/out_of_plane.h"
 #include "explicit/stage_clock.h"
 #include "math/sticky.h"
 #include "state/wide_lanes.h"
@@ -258,6 +259,8 @@ static void carry(struct run *run, struct block_scratch *scratch, uint32_t block
     stage_clock_lap(scratch->clock, STAGE_MOVE);
     const struct shape_context context = run_shape_context(run, run->time_step);
     run->kernels->scatter(&context, block, source, run->scatters);
+    if (run->grid.domain.revolves && run->scatters & SCATTER_FORCE)
+        sums->hoop_force += hoop_scatter(run, block, source, scratch);
     if (run->force_count > 0)
         run_scatter_forces(run, block, source->mass, 0, count, scratch,
                            still ? run->time : run->time + run->time_step);
@@ -289,6 +292,8 @@ void advance_forces(struct run *run, struct block_scratch *scratch, struct parti
     struct scatter_source source;
     damped_source(run, block, scratch, sums, &source);
     run->kernels->scatter(&context, block, &source, SCATTER_FORCE);
+    if (run->grid.domain.revolves)
+        sums->hoop_force += hoop_scatter(run, block, &source, scratch);
     stage_clock_lap(scratch->clock, STAGE_SCATTER);
 }
 

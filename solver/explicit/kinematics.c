@@ -3,9 +3,11 @@
  * f = 1 + g, g = dt L (Mast 2013, eq. 3.26-3.37, with b^e), stored as e = (b - 1)/2, which keeps
  * all digits of small strains:  e_tr = f e f^T + sym(g) + g g^T / 2. Materials see its logarithm.
  * Small strain: e += sym(g). Volumetric materials: ln J += ln det f. The trial strain replaces the
- * stored one at once; the material stage corrects it where particles yield. */
+ * stored one at once; the material stage corrects it where particles yield.
+ * Plane bodies that strain across their plane (out_of_plane.h) have their g_zz in gradient[8]. */
 #include "explicit/kinematics.h"
 
+#include "explicit/out_of_plane.h"
 #include "math/log1p_series.h"
 #include "math/log_strain.h"
 #include "math/tensor.h"
@@ -96,6 +98,22 @@ TALUS_INLINE void push_block(size_t count, size_t axes, const struct block_scrat
     }
 }
 
+/* What the strain across the plane adds: its own component, and a factor of the volume. */
+static void push_across(size_t count, const struct block_scratch *scratch, real *e_zz)
+{
+    const real *across = scratch->gradient[GRADIENT_ZZ];
+    real *increment = scratch->volume_increment;
+    for (size_t slot = 0; slot < count; slot += LANE_COUNT) {
+        const lanes g = lanes_load(across + slot);
+        const lanes grown = lanes_load(increment + slot);
+        lanes_store(increment + slot, grown + g + grown * g);
+        if (e_zz != NULL) {
+            const lanes old = lanes_load(e_zz + slot);
+            lanes_store(e_zz + slot, old + (g + (real)0.5 * g * g) * (1 + 2 * old));
+        }
+    }
+}
+
 static void push(const struct run *run, size_t count, const struct block_scratch *scratch,
                  real *const e[6])
 {
@@ -105,6 +123,8 @@ static void push(const struct run *run, size_t count, const struct block_scratch
         push_block(count, 2, scratch, e);
     else
         push_block(count, 1, scratch, e);
+    if (run->strains_across)
+        push_across(count, scratch, e == NULL ? NULL : e[2]);
 }
 
 /* tensor += sym(g). */
@@ -124,11 +144,20 @@ static void add_symmetric(const struct run *run, const struct block_scratch *scr
                                 (real)0.5 * (lanes_load(a + slot) + lanes_load(b + slot)));
         }
     }
+    const real *across = scratch->gradient[GRADIENT_ZZ];
+    for (size_t slot = 0; run->strains_across && slot < count; slot += LANE_COUNT)
+        lanes_store(tensor[2] + slot, lanes_load(tensor[2] + slot) + lanes_load(across + slot));
+}
+
+/* Normal components of g, at 4 k in the gradient. */
+static size_t normal_count(const struct run *run)
+{
+    return run->strains_across ? 3 : run->grid.domain.axis_count;
 }
 
 /* d = sym(g) / dt. */
-static void symmetric_rate(size_t count, size_t axes, const struct block_scratch *scratch,
-                           real inverse_step)
+static void symmetric_rate(size_t count, size_t axes, bool revolves,
+                           const struct block_scratch *scratch, real inverse_step)
 {
     assert(axes >= 1 && axes <= 3);
     for (size_t row = 0; row < axes; row++) {
@@ -141,6 +170,9 @@ static void symmetric_rate(size_t count, size_t axes, const struct block_scratch
                                             (lanes_load(a + slot) + lanes_load(b + slot)));
         }
     }
+    const real *across = scratch->gradient[GRADIENT_ZZ];
+    for (size_t slot = 0; revolves && slot < count; slot += LANE_COUNT)
+        lanes_store(scratch->rate[2] + slot, inverse_step * lanes_load(across + slot));
 }
 
 static void spin_rate(size_t count, size_t axes, const struct block_scratch *scratch,
@@ -235,7 +267,7 @@ static void advance_volumetric(const struct run *run, const struct particle_bloc
         if (run->finite_strain) {
             grown = lanes_load(increment + slot);
         } else {
-            for (size_t axis = 0; axis < run->grid.domain.axis_count; axis++)
+            for (size_t axis = 0; axis < normal_count(run); axis++)
                 grown += lanes_load(scratch->gradient[4 * axis] + slot);
         }
         const lanes sum = lanes_load(stored + slot) + grown;
@@ -271,7 +303,7 @@ static void advance_mixed(const struct run *run, const struct particle_block *bl
         if (!material_of(run, block, slot)->model->volumetric)
             continue;
         real grown = 0;
-        for (size_t axis = 0; axis < run->grid.domain.axis_count; axis++)
+        for (size_t axis = 0; axis < normal_count(run); axis++)
             grown += scratch->gradient[4 * axis][slot];
         if (run->finite_strain)
             grown = (real)log1p((double)scratch->volume_increment[slot]);
@@ -281,7 +313,7 @@ static void advance_mixed(const struct run *run, const struct particle_block *bl
     }
 }
 
-/* F - 1 <- g + (1 + g)(F - 1), row-major. */
+/* F - 1 <- g + (1 + g)(F - 1), row-major; then what is across the plane. */
 static void advance_gradient(const struct run *run, const struct particle_block *block,
                              const struct block_scratch *scratch, size_t count)
 {
@@ -301,6 +333,14 @@ static void advance_gradient(const struct run *run, const struct particle_block 
             lanes_store(particle_values(&run->grid.layout, block, PARTICLE_GRADIENT, entry) + slot,
                         sum);
         }
+    }
+    if (!run->strains_across)
+        return;
+    real *across = particle_values(&run->grid.layout, block, PARTICLE_GRADIENT, 4);
+    for (size_t slot = 0; slot < count; slot += LANE_COUNT) {
+        const lanes g = lanes_load(scratch->gradient[GRADIENT_ZZ] + slot);
+        const lanes old = lanes_load(across + slot);
+        lanes_store(across + slot, old + g + g * old);
     }
 }
 
@@ -332,7 +372,7 @@ static void fill_rates(const struct run *run, const struct particle_block *block
     const size_t axes = run->grid.domain.axis_count;
     const real inverse_step = time_step > 0 ? (real)(1.0 / time_step) : 0;
     if (run->any_rate) {
-        symmetric_rate(count, axes, scratch, inverse_step);
+        symmetric_rate(count, axes, run->grid.domain.revolves, scratch, inverse_step);
         volume_ratios(run, block, scratch, count);
     }
     if (run->any_spin && run->finite_strain)
@@ -346,6 +386,8 @@ double kinematics_advance(struct run *run, const struct particle_block *block,
     real *e[6];
     strain_arrays(run, block, e);
     reference_volumes(run, block, scratch, count);
+    if (run->strains_across)
+        out_of_plane_increment(run, block, scratch, count, time_step);
     advance_tracked(run, block, scratch, count);
     const bool mixed = run->any_tensor && run->any_volumetric;
     if (mixed) {
@@ -355,6 +397,8 @@ double kinematics_advance(struct run *run, const struct particle_block *block,
         if (run->any_tensor)
             advance_tensor(run, scratch, count, e);
     }
+    if (run->scene.dimension == TALUS_PLANE_STRESS)
+        out_of_plane_strain(run, block, scratch, count);
     const double least = advance_volume(run, block, scratch, count);
     if (run->any_volumetric && !mixed)
         advance_volumetric(run, block, scratch, count);
@@ -408,4 +452,6 @@ void kinematics_load(const struct run *run, const struct particle_block *block,
         if (material_of(run, block, slot)->model->volumetric)
             scratch->strain[0][slot] = stored[0][slot];
     }
+    if (run->scene.dimension == TALUS_PLANE_STRESS)
+        out_of_plane_strain(run, block, scratch, count);
 }

@@ -2,6 +2,7 @@
 #include "explicit/material_stage.h"
 
 #include "explicit/anti_locking_stage.h"
+#include "explicit/out_of_plane.h"
 #include "explicit/stage_clock.h"
 
 #include <assert.h>
@@ -190,6 +191,8 @@ struct material_outcome material_stage_run(struct run *run, const struct particl
         const bool refitted = anti_locking_strain(run, block, &fit, scratch);
         outcome.refitted = outcome.refitted || refitted;
         outcome.fall_backs += fit.cells.fall_backs;
+        if (run->scene.dimension == TALUS_PLANE_STRESS)
+            out_of_plane_strain(run, block, scratch, count);
         stage_clock_lap(scratch->clock, STAGE_ANTI_LOCKING);
         const bool flowed = single ? update_single(run, block, scratch, material, time_step)
                                    : update_compacted(run, block, scratch, material, time_step);
@@ -199,6 +202,8 @@ struct material_outcome material_stage_run(struct run *run, const struct particl
         anti_locking_stress(run, &fit, scratch);
         stage_clock_lap(scratch->clock, STAGE_ANTI_LOCKING);
     }
+    if (run->scene.dimension == TALUS_PLANE_STRESS) /* exactly, not up to rounding */
+        memset(scratch->stress[2], 0, count * sizeof(real));
     return outcome;
 }
 

@@ -245,9 +245,19 @@ static void clear_nodes(struct run *run, bool all)
     }
 }
 
+/* The hoop stress of a body of revolution pulls it towards its axis: a force of its own on the
+ * momentum along x. */
+static void book_hoop(struct run *run)
+{
+    const double impulse = run->audit.hoop_force * run->time_step;
+    run->audit.impulse[0] += impulse;
+    run->audit.exchanged += fabs(impulse);
+}
+
 static void book_nodes(struct run *run, double factor)
 {
     book_body_forces(run, factor);
+    book_hoop(run);
     wall_nodes_sum(run);
     if (factor < 1 || run->gravity_deviates)
         run_book_gravity(run, factor);

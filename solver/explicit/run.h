@@ -36,6 +36,7 @@ struct run_material {
     double wave_speed; /* [m/s] */
     double bulk_speed; /* sqrt(K / rho) [m/s], for bulk damping */
     double viscosity;  /* [Pa s] */
+    double thinning;   /* plane stress: -e_zz over e_xx + e_yy, nu / (1 - nu) */
 };
 
 /* A particle that left its cell in the second pass, with what it must still give to the nodes. */
@@ -79,6 +80,7 @@ struct tile_sums {
     double plastic_energy, viscous_energy; /* dissipated in the step [J] */
     uint64_t fall_backs;               /* of anti-locking: control volumes without a linear fit */
     double kinetic, strain, potential; /* where run->measures, and by run_measure_energy [J] */
+    double hoop_force;                 /* of the hoop stress on the nodes, along x [N] */
 };
 
 /* What a chunk of node blocks adds up in the node update; summed over the chunks in order. */
@@ -104,6 +106,7 @@ struct run_audit {
     double exchanged;                                         /* sum of |impulses| */
     double initial_energy, initial_potential, initial_stored; /* stored: kinetic + strain [J] */
     double largest_growth; /* of energy beyond the books, relative to the turnover */
+    double hoop_force;     /* along x, of the hoop stresses that act in the next step [N] */
 };
 
 struct run;
@@ -133,6 +136,7 @@ struct run {
     uint16_t *body_material;        /* [scene.body_count] owned */
     bool finite_strain, any_volumetric, any_tensor, any_plastic, any_spin;
     bool any_rate;            /* a material or the damping wants d */
+    bool strains_across;      /* a plane body with strain along zz (out_of_plane.h) */
     size_t strain_components; /* that the materials see: 3, 4 or 6 */
     size_t
         stored_components; /* of PARTICLE_STRAIN: the same, or 1 if all materials are volumetric */

@@ -64,6 +64,7 @@ static struct tile_sums sum_tiles(const struct run *run)
         total.plastic_energy += sums->plastic_energy;
         total.viscous_energy += sums->viscous_energy;
         total.fall_backs += sums->fall_backs;
+        total.hoop_force += sums->hoop_force;
     }
     return total;
 }
@@ -86,6 +87,7 @@ static void take_passes(struct run *run, struct stage_clock *clock)
         run_start_nodes(run);
         stage_clock_lap(clock, STAGE_KICK_NODES);
         run_pass(run, stress_tile);
+        run->audit.hoop_force = sum_tiles(run).hoop_force;
     }
     run_update_nodes(run);
     stage_clock_lap(clock, STAGE_UPDATE_NODES);
@@ -119,6 +121,7 @@ enum talus_status run_take_step(struct run *run, struct talus_error *error)
     run->fall_backs += sums.fall_backs;
     if (sums.fall_backs > run->fall_backs_worst)
         run->fall_backs_worst = sums.fall_backs;
+    run->audit.hoop_force = sums.hoop_force;
     if (run->measures)
         run_book_energy(run);
     count_crossers(run, clock);
@@ -153,6 +156,7 @@ enum talus_status run_start(struct run *run, struct talus_error *error)
     run->largest_speed = sqrt(sums.speed_squared);
     run->signal_speed = sums.signal_speed;
     run->materials_present = sums.materials;
+    run->audit.hoop_force = sums.hoop_force;
     run_choose_time_step(run);
     run_measure_energy(run);
     run->audit.initial_stored = run->energy.kinetic + run->energy.strain;

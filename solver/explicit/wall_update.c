@@ -71,7 +71,10 @@ void wall_nodes_start(struct run *run, size_t begin, size_t end)
 static void add_face_sums(const struct run *run, const struct wall_node *wall,
                           const struct contact *contact, double *partial)
 {
-    const double full = 1e-3 * run->reference_density * domain_cell_volume(&run->grid.domain);
+    const struct domain *domain = &run->grid.domain;
+    /* A node on the axis of revolution has a cell on one side only. */
+    const double circle = domain_circle(domain, fmax(wall->position[0], domain->cell[0] / 6));
+    const double full = 1e-3 * run->reference_density * circle * domain_cell_volume(domain);
     for (size_t index = 0; index < wall->faces.count; index++) {
         double *sums = partial + wall->faces.face[index] * FACE_SUMS;
         const struct wall_face *face = &run->walls.faces[wall->faces.face[index]];

@@ -5,15 +5,17 @@
 #include <math.h>
 #include <stdbool.h>
 
-/* Edge of the square or cube that has the particle's volume [m]. */
+/* Edge of the square or cube that has the particle's volume [m]; of the square that makes it in
+ * going around the axis of revolution. */
 static double particle_size(const struct render_scene *scene, const struct render_data *data,
                             size_t particle)
 {
+    static const double two_pi = 6.28318530717958647693;
     if (data->volumes == NULL || !(data->volumes[particle] > 0.0))
         return scene->spacing;
-    return scene->axis_count == 3   ? cbrt(data->volumes[particle])
-           : scene->axis_count == 2 ? sqrt(data->volumes[particle])
-                                    : data->volumes[particle];
+    const double circle = scene->revolves ? two_pi * fabs(data->positions[3 * particle]) : 1.0;
+    const double size = data->volumes[particle] / fmax(circle, 1e-300);
+    return scene->axis_count == 3 ? cbrt(size) : scene->axis_count == 2 ? sqrt(size) : size;
 }
 
 /* The half edges of a particle as columns: F times those of its initial cube (Andersen 2012: the
@@ -29,7 +31,8 @@ static void half_edges(const struct render_scene *scene, const struct render_dat
                                    f[1] * (f[3] * f[8] - f[5] * f[6]) +
                                    f[2] * (f[3] * f[7] - f[4] * f[6]);
         if (data->volumes != NULL && determinant > 0.0)
-            size /= pow(determinant, 1.0 / scene->axis_count);
+            size /= pow(scene->revolves ? determinant / f[8] : determinant,
+                        1.0 / scene->axis_count); /* the square of a section has no hoop */
     }
     for (int edge = 0; edge < 3; edge++) {
         for (int axis = 0; axis < 3; axis++) {

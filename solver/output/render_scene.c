@@ -158,7 +158,10 @@ static enum talus_status read_root(const json_t *root, struct render_scene *scen
     const json_t *grid = json_object_get(root, "grid");
     const char *title = json_string_value(json_object_get(root, "title"));
     (void)snprintf(scene->title, sizeof scene->title, "%s", title == NULL ? "" : title);
-    scene->axis_count = axis_count_of(json_object_get(root, "dimension"));
+    const json_t *dimension = json_object_get(root, "dimension");
+    scene->axis_count = axis_count_of(dimension);
+    scene->revolves =
+        scene->axis_count == 2 && strcmp(json_string_value(dimension), "axisymmetric") == 0;
     read_vector(json_object_get(grid, "cell"), scene->cell);
     read_vector(json_object_get(grid, "min"), scene->grid_min);
     read_vector(json_object_get(grid, "max"), scene->grid_max);

@@ -5,6 +5,7 @@
 
 #include "talus/status.h"
 
+#include <stdbool.h>
 #include <stddef.h>
 
 enum render_boundary_kind { RENDER_PLANE, RENDER_FACE, RENDER_BOX };
@@ -18,6 +19,7 @@ struct render_boundary {
 struct render_scene {
     char title[160];
     int axis_count; /* 1, 2 or 3 */
+    bool revolves;  /* axisymmetric: x is the distance from the axis */
     int up_axis;    /* 0..2: against gravity; 1 without gravity */
     double up_sign; /* +1 or -1 along it */
     double cell[3]; /* [m] of the grid; 0 beyond the dimension */

@@ -6,23 +6,20 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const char *const dimension_words[] = {"line", "plane_strain", "solid", NULL};
-static const enum talus_dimension dimensions[] = {TALUS_LINE, TALUS_PLANE_STRAIN, TALUS_SOLID};
-static const char *const dimension_lacking[] = {"plane_stress", "axisymmetric", NULL};
+/* In the order of enum talus_dimension. */
+static const char *const dimension_words[] = {"line",         "plane_strain", "plane_stress",
+                                              "axisymmetric", "solid",        NULL};
+static const size_t dimension_axes[] = {1, 2, 2, 2, 3};
 
 static void read_dimension(struct scene_reader *reader, const struct scene_path *path,
                            const json_t *given, void *target, json_t *effective)
 {
     struct talus_scene *scene = target;
-    int index = scene_choice_read(reader, path, given, dimension_words, dimension_lacking);
-    for (const char *const *word = dimension_lacking; index < 0 && *word != NULL; word++) {
-        if (json_is_string(given) && strcmp(*word, json_string_value(given)) == 0)
-            reader->axis_count = 2; /* planar: the vectors can still be checked */
-    }
+    int index = scene_choice_read(reader, path, given, dimension_words, NULL);
     if (index < 0)
         return;
-    scene->dimension = dimensions[index];
-    scene->axis_count = reader->axis_count = (size_t)index + 1;
+    scene->dimension = (enum talus_dimension)index;
+    scene->axis_count = reader->axis_count = dimension_axes[index];
     scene_put(reader, effective, path->key, json_string(dimension_words[index]));
 }
 
@@ -86,7 +83,9 @@ const struct scene_field scene_root_fields[] = {
      .required = true,
      .read = read_dimension,
      .schema = dimension_schema,
-     .meaning = "line (1D), plane_strain (2D), solid (3D); vectors have as many components"},
+     .meaning = "line (1D), plane_strain, plane_stress (linear elastic only), axisymmetric (x is "
+                "the distance from the axis, y runs along it), solid (3D); vectors have 1, 2 or 3 "
+                "components to match"},
     {.key = "duration",
      .kind = SCENE_NUMBER,
      .unit = "s",

@@ -96,8 +96,9 @@ static void write_particle(struct particle_seed *seed, size_t particle, size_t b
         seed->position[k][particle] = position[k];
         seed->velocity[k][particle] = velocity[k];
     }
-    seed->volume[particle] = volume;
-    seed->mass[particle] = values->density * volume;
+    const double circle = seeding_circle(&values->lattice.shape, position[0]);
+    seed->volume[particle] = circle * volume;
+    seed->mass[particle] = circle * values->density * volume;
     seed->body[particle] = (uint16_t)body_index;
     if (seed->stress[0] == NULL)
         return;

@@ -38,7 +38,7 @@ static uint64_t count_particles(const struct talus_scene *scene,
     double cell = 1.0;
     for (size_t k = 0; k < lattice->shape.axis_count; k++)
         cell *= lattice->spacing[k];
-    return saturate(fmin(points, round(seeding_shape_volume(&lattice->shape) / cell)));
+    return saturate(fmin(points, round(seeding_shape_measure(&lattice->shape) / cell)));
 }
 
 static uint64_t count_cells(const struct talus_scene *scene, const struct seeding_shape *shape)

@@ -152,5 +152,7 @@ double seeding_lattice_factor(const struct seeding_lattice *lattice, uint64_t ke
     double cell = 1.0;
     for (size_t k = 0; k < lattice->shape.axis_count; k++)
         cell *= lattice->spacing[k];
-    return seeding_shape_volume(&lattice->shape) / (cell * (double)kept);
+    const double circles =
+        lattice->shape.revolves ? seeding_lattice_circles(lattice) : (double)kept;
+    return seeding_shape_volume(&lattice->shape) / (cell * circles);
 }

@@ -45,6 +45,9 @@ void seeding_lattice_row(const struct seeding_lattice *lattice, uint64_t index[3
 /* Number of kept points, row by row: takes about 50 ns a row. */
 uint64_t seeding_lattice_kept(const struct seeding_lattice *lattice);
 
+/* Sum of the circles of the kept points of an axisymmetric body [m]. */
+double seeding_lattice_circles(const struct seeding_lattice *lattice);
+
 /* Volume of the body over the volume that its kept points stand for. */
 double seeding_lattice_factor(const struct seeding_lattice *lattice, uint64_t kept);
 

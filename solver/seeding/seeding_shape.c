@@ -118,6 +118,12 @@ void seeding_shape_init(struct seeding_shape *shape, const struct talus_scene *s
     turn_init(shape);
     bound_body(shape, false, shape->min, shape->max);
     seeding_shape_cut(shape, body->clip_min, body->clip_max);
+    shape->revolves = scene->dimension == TALUS_AXISYMMETRIC;
+    if (shape->revolves && !shape->turned && body->shape == TALUS_BODY_SPHERE) {
+        static const double open[3] = {INFINITY, INFINITY, INFINITY};
+        static const double axis[3] = {0.0, -INFINITY, -INFINITY};
+        seeding_shape_cut(shape, axis, open);
+    }
 }
 
 void seeding_shape_cut(struct seeding_shape *shape, const double min[3], const double max[3])

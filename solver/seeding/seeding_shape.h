@@ -19,6 +19,7 @@ struct seeding_shape {
     bool clipped;          /* the clip box cuts the bounding box */
     bool turned;           /* `turn` is not the identity */
     double turn[3][3];     /* world = about + turn (point - about) */
+    bool revolves;         /* axisymmetric: x is the distance from the axis, which cuts the shape */
 };
 
 void seeding_shape_init(struct seeding_shape *shape, const struct talus_scene *scene,
@@ -61,6 +62,13 @@ double seeding_cylinder_axis(const struct talus_body *body, double axis[3]);
 
 /* Volume [m^3, m^2 x 1 m, m x 1 m^2]: closed form for everything that is not cut and for polygons,
  * integrated to 1e-11 of the bounding box for a cut sphere or cylinder. */
+/* Length, area or volume [m, m^2, m^3]: closed form for everything that is not cut, integrated to
+ * 1e-11 of the bounding box for a cut sphere or cylinder. */
+double seeding_shape_measure(const struct seeding_shape *shape);
+/* Volume [m^3, m^2 x 1 m, m x 1 m^2]: the measure, or in axisymmetric scenes the volume of the
+ * whole body of revolution [m^3], as exact. */
 double seeding_shape_volume(const struct seeding_shape *shape);
+/* Length of the circle that a point at x stands for [m]; 1 where nothing revolves. */
+double seeding_circle(const struct seeding_shape *shape, double x);
 
 #endif

@@ -50,6 +50,7 @@ enum talus_status seeding_stress_init(struct seeding_stress *stress,
     const struct talus_body *body = &scene->bodies[body_index];
     memset(stress, 0, sizeof *stress);
     stress->shape = shape;
+    stress->plane = scene->dimension == TALUS_PLANE_STRESS;
     if (body->initial_stress != TALUS_INITIAL_HYDROSTATIC &&
         body->initial_stress != TALUS_INITIAL_GEOSTATIC)
         return TALUS_OK;
@@ -105,4 +106,6 @@ void seeding_stress_at(const struct seeding_stress *stress, const double positio
             value[k] =
                 (enum talus_axis)k == stress->vertical ? vertical : stress->lateral * vertical;
     }
+    if (stress->plane)
+        value[2] = 0.0;
 }

@@ -12,6 +12,7 @@ struct seeding_stress {
     double weight;  /* [N/m^3] density x |gravity on the vertical axis| */
     double up;      /* +1 or -1: sign of "up" on the vertical axis */
     double lateral; /* horizontal over vertical stress: K0, or 1 for a fluid at rest */
+    bool plane;     /* plane stress: none along zz */
 };
 
 /* TALUS_INVALID if a depth is needed and there is no gravity. Borrows scene and shape. */

@@ -171,7 +171,7 @@ static double cut_volume(const struct seeding_shape *shape)
     return volume;
 }
 
-double seeding_shape_volume(const struct seeding_shape *shape)
+double seeding_shape_measure(const struct seeding_shape *shape)
 {
     const struct talus_body *body = shape->body;
     if (seeding_shape_is_empty(shape))

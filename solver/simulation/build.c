@@ -26,6 +26,12 @@ static const struct material *model_of(const struct talus_scene *scene, size_t i
     return material_table[scene->materials[index].model_index];
 }
 
+/* Plane bodies that strain along zz. */
+static bool strains_across(const struct talus_scene *scene)
+{
+    return scene->dimension == TALUS_PLANE_STRESS || scene->dimension == TALUS_AXISYMMETRIC;
+}
+
 static size_t strain_components(const struct talus_scene *scene)
 {
     return scene->axis_count == 1 ? 3 : scene->axis_count == 2 ? 4 : 6;
@@ -56,9 +62,8 @@ void run_layout(const struct talus_scene *scene, struct particle_layout *layout)
     count[PARTICLE_DISPLACEMENT] = scene_wants(scene, TALUS_FIELD_DISPLACEMENT) ? axes : 0;
     const bool finite = scene->solver.strain == TALUS_STRAIN_FINITE;
     const bool strain = scene_wants(scene, TALUS_FIELD_STRAIN);
-    count[PARTICLE_GRADIENT] =
-        scene_wants(scene, TALUS_FIELD_DEFORMATION_GRADIENT) || (strain && finite) ? axes * axes
-                                                                                   : 0;
+    if (scene_wants(scene, TALUS_FIELD_DEFORMATION_GRADIENT) || (strain && finite))
+        count[PARTICLE_GRADIENT] = axes * axes + strains_across(scene);
     count[PARTICLE_TOTAL_STRAIN] = strain && !finite ? tensor : 0;
     layout->has_body = scene->body_count > 1;
     particle_layout_finish(layout);
@@ -67,6 +72,7 @@ void run_layout(const struct talus_scene *scene, struct particle_layout *layout)
 static void build_domain(const struct talus_scene *scene, struct domain *domain)
 {
     domain->axis_count = scene->axis_count;
+    domain->revolves = scene->dimension == TALUS_AXISYMMETRIC;
     for (size_t axis = 0; axis < 3; axis++) {
         const bool used = axis < scene->axis_count;
         domain->cell[axis] = used ? scene->grid.cell[axis] : 1.0;
@@ -74,6 +80,17 @@ static void build_domain(const struct talus_scene *scene, struct domain *domain)
         domain->min[axis] = used ? scene->grid.min[axis] : 0.0;
         domain->cell_count[axis] = used ? (int32_t)scene->grid.cell_count[axis] : 1;
     }
+}
+
+/* In plane stress waves and volumes in the plane are softer: E / (1 - nu^2) takes the place of
+ * K + 4 G / 3, and E / (2 (1 - nu)) that of K. */
+static void soften(struct run_material *material, double bulk, double shear)
+{
+    const double young = 9 * bulk * shear / (3 * bulk + shear);
+    const double poisson = (3 * bulk - 2 * shear) / (2 * (3 * bulk + shear));
+    material->thinning = poisson / (1 - poisson);
+    material->wave_speed = sqrt(young / (1 - poisson * poisson) / material->density);
+    material->bulk_speed = sqrt(young / (2 * (1 - poisson)) / material->density);
 }
 
 static enum talus_status build_materials(struct run *run, struct talus_error *error)
@@ -97,6 +114,8 @@ static enum talus_status build_materials(struct run *run, struct talus_error *er
         material->wave_speed = material->model->wave_speed(material->constants);
         material_elastic_moduli(material->model, values, &bulk, &shear);
         material->bulk_speed = sqrt(bulk / material->density);
+        if (run->scene.dimension == TALUS_PLANE_STRESS)
+            soften(material, bulk, shear);
         material->viscosity = material->model->viscosity == NULL
                                   ? 0
                                   : material->model->viscosity(material->constants);
@@ -210,15 +229,20 @@ enum talus_status run_build(struct run *run, const struct talus_scene *scene,
     memset(run, 0, sizeof *run);
     if (scene_copy(scene, &run->scene) != 0)
         return talus_error_set(error, TALUS_MEMORY, "memory", "", "out of memory");
+    if (scene->dimension == TALUS_AXISYMMETRIC && scene_add_axis(&run->scene) != 0)
+        return talus_error_set(error, TALUS_MEMORY, "memory", "", "out of memory");
     if (scene->material_count > 64)
         return talus_error_set(error, TALUS_INVALID, "range", "/materials",
                                "%zu materials; at most 64 are possible", scene->material_count);
+    if (scene_check_dimension(scene, error) != TALUS_OK)
+        return error->status;
     if (refuse_body_filters(scene, error) != TALUS_OK ||
         refuse_mixed_elimination(scene, error) != TALUS_OK)
         return TALUS_UNSUPPORTED;
     run->threads = run->thread_capacity = options->threads < 1 ? 1 : options->threads;
     run->finite_strain = scene->solver.strain == TALUS_STRAIN_FINITE;
     run->strain_components = strain_components(scene);
+    run->strains_across = strains_across(scene);
     build_domain(scene, &run->grid.domain);
     run_layout(&run->scene, &run->grid.layout);
     run->stored_components = run->grid.layout.component_count[PARTICLE_STRAIN];

@@ -17,11 +17,11 @@ static const char *const energy_names[TALUS_ENERGY_PART_COUNT] = {
     [TALUS_ENERGY_DISSIPATED] = "dissipated", [TALUS_ENERGY_EXTERNAL] = "external",
     [TALUS_ENERGY_NUMERICAL] = "numerical"};
 
-/* Extensive quantities are per metre in 2D and per square metre in 1D. */
 static const char *extensive_unit(const struct talus_scene *scene, const char *solid,
                                   const char *plane, const char *line)
 {
-    return scene->axis_count == 3 ? solid : scene->axis_count == 2 ? plane : line;
+    const size_t axes = extensive_axis_count(scene);
+    return axes == 3 ? solid : axes == 2 ? plane : line;
 }
 
 struct column_writer {
@@ -69,6 +69,8 @@ static void add_reactions(struct column_writer *writer)
 {
     for (size_t index = 0; index < writer->scene->boundary_count; index++) {
         const struct talus_boundary *boundary = &writer->scene->boundaries[index];
+        if (boundary->internal)
+            continue;
         add_reaction(writer, boundary->name);
         for (size_t face = 0; boundary->shape == TALUS_BOUNDARY_BOX && face < boundary->face_count;
              face++) {
@@ -131,6 +133,8 @@ static double *sample_reactions(struct run *run, double *value)
 {
     for (size_t index = 0; index < run->scene.boundary_count; index++) {
         const struct talus_boundary *boundary = &run->scene.boundaries[index];
+        if (boundary->internal)
+            continue;
         value = sample_record(run, &run->boundaries[index], value);
         for (size_t face = 0; boundary->shape == TALUS_BOUNDARY_BOX && face < boundary->face_count;
              face++)

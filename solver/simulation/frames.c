@@ -84,6 +84,8 @@ static void full_gradient(const struct run *run, const struct particle_block *bl
         for (size_t column = 0; column < axes; column++)
             gradient[3 * row + column] = stored[axes * row + column];
     }
+    if (run->strains_across)
+        gradient[8] = stored[axes * axes];
 }
 
 /* ln V = 1/2 ln(F F^T), through e = (F F^T - 1)/2 of the stored F - 1. */

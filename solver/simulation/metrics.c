@@ -78,6 +78,8 @@ const struct talus_metric *talus_simulation_metrics(struct talus_simulation *sim
     add_audit(simulation);
     for (size_t index = 0; index < run->scene.boundary_count; index++) {
         const struct talus_boundary *boundary = &run->scene.boundaries[index];
+        if (boundary->internal)
+            continue;
         add_peaks(simulation, boundary->name, &run->boundaries[index]);
         for (size_t face = 0; boundary->shape == TALUS_BOUNDARY_BOX && face < boundary->face_count;
              face++) {

@@ -126,11 +126,13 @@ static bool look_at(const struct view *view, const struct talus_probe *probe, st
     return meets_boundary(view, probe);
 }
 
-/* Half the edge of a cube, square or line of that volume. */
-static double half_size(const struct run *run, double volume)
+/* Half the edge of a cube, square or line of that volume, or of the square that makes it in going
+ * around the axis at that x. */
+static double half_size(const struct run *run, double volume, double x)
 {
     const size_t axes = run->grid.domain.axis_count;
-    return 0.5 * (axes == 1 ? volume : axes == 2 ? sqrt(volume) : cbrt(volume));
+    const double size = volume / domain_circle(&run->grid.domain, x);
+    return 0.5 * (axes == 1 ? size : axes == 2 ? sqrt(size) : cbrt(size));
 }
 
 /* Where the particles of a row are [m]; 0 on axes that the domain lacks. */
@@ -235,11 +237,30 @@ static double largest_volume(const struct view *view)
     return wide_lanes_largest(wide_lanes_maximum(even, odd));
 }
 
+static double x_of(const struct view *view, size_t slot)
+{
+    return view->centre[0][slot % LANE_COUNT] + view->width[0] * (double)view->position[0][slot];
+}
+
+/* Size does not go with volume where the circles of the particles differ. */
+static double largest_revolved(const struct view *view)
+{
+    double largest = 0;
+    for (size_t slot = 0; slot < view->slot_count; slot++) {
+        if (view->block->id[slot] != PARTICLE_NONE)
+            largest =
+                fmax(largest, half_size(view->run, view->volume[slot], x_of(view, slot)));
+    }
+    return largest;
+}
+
 /* Half of the largest particle of a block, and a rounding more. */
 static double largest_half(struct view *view)
 {
-    if (view->half < 0)
-        view->half = half_size(view->run, largest_volume(view)) * (1 + 1e-12);
+    if (view->half < 0 && view->run->grid.domain.revolves)
+        view->half = largest_revolved(view) * (1 + 1e-12);
+    else if (view->half < 0)
+        view->half = half_size(view->run, largest_volume(view), 1) * (1 + 1e-12);
     return view->half;
 }
 
@@ -248,7 +269,7 @@ static void add_reach(const struct look *look, size_t slot, double reach)
     struct probe_sums *sums = look->sums;
     if (look->view->block->id[slot] == PARTICLE_NONE)
         return;
-    const double half = half_size(look->view->run, look->view->volume[slot]);
+    const double half = half_size(look->view->run, look->view->volume[slot], x_of(look->view, slot));
     sums->low = reach - half < sums->low ? reach - half : sums->low;
     sums->high = reach + half > sums->high ? reach + half : sums->high;
 }

@@ -54,7 +54,7 @@ static void probe_unit(const struct talus_scene *scene, const struct talus_probe
     static const char *const area[3] = {"1", "m", "m^2"};
     static const char *const volume[3] = {"m", "m^2", "m^3"};
     assert(scene->axis_count >= 1 && scene->axis_count <= 3);
-    const size_t axes = scene->axis_count - 1;
+    const size_t axes = extensive_axis_count(scene) - 1;
     const char *name = "m";
     if (probe->kind == TALUS_PROBE_POINT)
         name = field_units[probe->field];

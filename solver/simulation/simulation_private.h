@@ -81,4 +81,21 @@ void field_values(const struct run *run, const struct particle_block *block, siz
 size_t field_components(enum talus_field field);
 bool field_is_stored(const struct run *run, enum talus_field field);
 
+/* Axes in the units of extensive quantities: results are per metre in 2D and per square metre in
+ * 1D, and for the whole circle in axisymmetric scenes. */
+static inline size_t extensive_axis_count(const struct talus_scene *scene)
+{
+    return scene->dimension == TALUS_AXISYMMETRIC ? 3 : scene->axis_count;
+}
+
+/* ---- dimension_check.c ---- */
+/* TALUS_INVALID, with a pointer into the scene, for what its dimension excludes. */
+TALUS_MUST_CHECK enum talus_status scene_check_dimension(const struct talus_scene *scene,
+                                                         struct talus_error *error);
+
+/* ---- revolution_axis.c ---- */
+/* The axis of an axisymmetric scene as a boundary of the run's own scene, behind the others: it
+ * holds back motion along x as a slip wall does, and shape functions fold there. 0, or -1. */
+int scene_add_axis(struct talus_scene *scene);
+
 #endif

@@ -5,6 +5,7 @@
 #define TALUS_DOMAIN_H
 
 #include <math.h>
+#include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
 
@@ -14,6 +15,7 @@ struct domain {
     double inverse_cell[3];
     double min[3];         /* [m] */
     int32_t cell_count[3]; /* 1 beyond the dimension */
+    bool revolves;         /* axisymmetric: x is the distance from the axis */
 };
 
 /* Smallest cell edge [m]. */
@@ -29,6 +31,14 @@ static inline double domain_smallest_cell(const struct domain *domain)
 static inline double domain_cell_volume(const struct domain *domain)
 {
     return domain->cell[0] * domain->cell[1] * domain->cell[2];
+}
+
+/* Length of the circle that a point at this distance from the axis stands for [m]; 1 in bodies that
+ * are no bodies of revolution. */
+static inline double domain_circle(const struct domain *domain, double radius)
+{
+    static const double two_pi = 6.28318530717958647693;
+    return domain->revolves ? two_pi * radius : 1.0;
 }
 
 /* World coordinate of a cell-relative position on one axis. */

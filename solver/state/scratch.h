@@ -11,6 +11,7 @@
 #include <stdint.h>
 
 enum { SCRATCH_HISTORY_MAX = 16 };
+enum { GRADIENT_ZZ = 8 }; /* of the increments g */
 
 struct stage_clock; /* explicit/stage_clock.h */
 

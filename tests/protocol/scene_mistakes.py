@@ -169,6 +169,11 @@ MISTAKES = [
      "/solver/precision"),
     # promised, not built
     ("quasi-static", [("/solver/kind", "quasi_static")], "/solver/kind"),
-    ("plane stress", [("/dimension", "plane_stress")], "/dimension"),
+    ("plane stress with a fluid",
+     [("/dimension", "plane_stress"), ("/materials/rubber", FLUID)], "/materials/rubber/model"),
+    ("gravity away from the axis",
+     [("/dimension", "axisymmetric"), ("/gravity", [1, -9.81])], "/gravity/0"),
+    ("a grid beyond the axis", [("/dimension", "axisymmetric"), ("/grid/min", [-1, 0])],
+     "/grid/min/0"),
     ("phases", [("/phases", {})], "/phases"),
 ]

@@ -12,7 +12,7 @@ WORKER = ""
 REMOVE = object()
 MISTAKES = [
     ("block", ["dimension"], "plane"),
-    ("block", ["dimension"], "plane_stress"),
+    ("block", ["dimension"], "plane_stresses"),
     ("block", ["duration"], 0),
     ("block", ["duration"], REMOVE),
     ("block", ["bodys"], []),
@@ -89,7 +89,7 @@ class Schema(unittest.TestCase):
         text = str(self.schema)
         for word in ("quasi_static", "gimp", "apic", "flip_ratio", "polygon", "beam_mode",
                      "traction", "front_smoothing", "hybrid",
-                     "axisymmetric", "max_iterations"):
+                     "max_iterations"):
             self.assertNotIn(f"'{word}'", text)
 
 

@@ -46,6 +46,13 @@ static const char *const bases[] = {
         "   \"count\": [12, 24], \"initial_stress\": \"hydrostatic\"}],"
         " \"boundaries\": [{\"plane\": {\"point\": [0, 0], \"normal\": [0, 1]},"
         "   \"condition\": \"slip\"}]}",
+    [BASE_AXIAL] = "{\"dimension\": \"axisymmetric\", \"duration\": 0.2,"
+                   " \"grid\": {\"cell\": 0.1, \"min\": [0, 0], \"max\": [2, 2]},"
+                   " \"materials\": {\"rubber\": {\"model\": \"linear_elastic\", \"density\": 1000,"
+                   "   \"young_modulus\": 1e6, \"poisson_ratio\": 0.3}},"
+                   " \"gravity\": [0, -9.81],"
+                   " \"bodies\": [{\"material\": \"rubber\", \"velocity\": [0, 1],"
+                   "   \"sphere\": {\"centre\": [0, 1], \"radius\": 0.5}, \"spacing\": 0.05}]}",
 };
 
 static json_t *parse(const char *text)

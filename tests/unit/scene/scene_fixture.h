@@ -9,6 +9,7 @@ enum fixture_base {
     BASE_PLANE, /* plane strain: cap model, plane and box boundaries, probes, references */
     BASE_SOLID, /* solid: elastic block, face and plane boundaries */
     BASE_FLUID, /* plane strain: water */
+    BASE_AXIAL, /* axisymmetric: an elastic ball */
 };
 
 /* A new reference to the scene. */
