@@ -223,8 +223,7 @@ static void rectangle_faces(const struct wall_shape *shape, const struct domain 
         area *= 0.5;
         missing = offset * axes[index][0];
     }
-    add_face(faces, shape->first_face,
-             area * node_circle(domain, node[0], missing < 0, missing > 0));
+    add_face(faces, shape->first_face, area * node_circle(domain, node[0], missing<0, missing> 0));
 }
 
 void wall_set_node_faces(const struct wall_set *walls, const struct domain *domain,

@@ -75,8 +75,8 @@ static enum talus_status move_record(struct run *run, const struct outbox_record
     run->kernels->scatter_one(&context, &run->grid.blocks[target], slot, entry->force_stress,
                               run->scatters);
     if (run->grid.domain.revolves && run->scatters & SCATTER_FORCE)
-        run->audit.hoop_force += hoop_scatter_one(run, &run->grid.blocks[target], slot,
-                                                  entry->force_stress[2]);
+        run->audit.hoop_force +=
+            hoop_scatter_one(run, &run->grid.blocks[target], slot, entry->force_stress[2]);
     if (run->force_count > 0 && run_reserve_scratch(run) != 0)
         return talus_error_set(error, TALUS_MEMORY, "memory", "", "out of memory at step %llu",
                                (unsigned long long)run->step);

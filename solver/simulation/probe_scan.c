@@ -248,8 +248,7 @@ static double largest_revolved(const struct view *view)
     double largest = 0;
     for (size_t slot = 0; slot < view->slot_count; slot++) {
         if (view->block->id[slot] != PARTICLE_NONE)
-            largest =
-                fmax(largest, half_size(view->run, view->volume[slot], x_of(view, slot)));
+            largest = fmax(largest, half_size(view->run, view->volume[slot], x_of(view, slot)));
     }
     return largest;
 }
@@ -269,7 +268,8 @@ static void add_reach(const struct look *look, size_t slot, double reach)
     struct probe_sums *sums = look->sums;
     if (look->view->block->id[slot] == PARTICLE_NONE)
         return;
-    const double half = half_size(look->view->run, look->view->volume[slot], x_of(look->view, slot));
+    const double half =
+        half_size(look->view->run, look->view->volume[slot], x_of(look->view, slot));
     sums->low = reach - half < sums->low ? reach - half : sums->low;
     sums->high = reach + half > sums->high ? reach + half : sums->high;
 }
