@@ -170,6 +170,13 @@ struct talus_boundary {
     bool area_source_rule;  /* h^2 a node (Mast 7.15) instead of tributary areas */
     int body_index;         /* acts on this body only; -1: on all */
     bool internal;          /* the solver's own, of which nothing is reported */
+    unsigned prescribed;    /* bit set of the axes along which its faces with the condition
+                               `velocity` prescribe it; 0: none has it */
+    double velocity[3];     /* [m/s] of these faces, where no table has points */
+    struct talus_time_table velocity_tables[3];
+    bool stays;         /* does not move along */
+    bool timed;         /* acts only ... */
+    double from, until; /* ... in between [s]; may be infinite */
 };
 
 /* Fields that can be read from particles; the table is talus/fields.def. */

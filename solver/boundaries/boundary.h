@@ -32,6 +32,7 @@ struct boundary_condition {
     const char *name, *reference, *summary;
     const struct parameter *parameters; /* ends with key NULL */
     bool eliminates;                    /* takes out the particles behind it; constrains no node */
+    bool prescribes;                    /* the velocity of its boundary, along that one's axes */
     /* Largest tangential impulse [N s] that it can hold. NULL: none. */
     double (*tangential_limit)(const struct wall_face *face, const struct wall_grip *grip);
     /* With a limit only: tangential impulse beyond it, per squared sliding speed
@@ -66,6 +67,7 @@ struct wall_set {
     size_t face_count;
     struct wall_shape *shapes; /* [boundary_count] owned */
     size_t boundary_count;
+    bool timed; /* some boundary moves, or acts in a part of the time only */
     /* Grows whenever a boundary moved to other grid lines, began or ended to act; what was worked
      * out from node_faces() or cell_folds() before is then void. */
     uint64_t change_count;
@@ -74,9 +76,18 @@ struct wall_set {
 /* Share of a cell within which something counts as lying on a grid line. */
 #define LINE_TOLERANCE 0.01
 
-/* Geometry of one boundary on the grid. */
+/* What of a boundary changes over time. No padding: stored as bytes. */
+struct wall_motion {
+    double moved[3];   /* [m] way from where the scene puts it */
+    double snapped[3]; /* [m] the same, of the nodes on which it acts */
+    uint64_t acts;     /* 1 or 0: in the present step */
+};
+
+/* Geometry of one boundary on the grid. Places are present ones; `held_point`, `line`, `box_low`
+ * and `box_high` say which nodes it acts on. */
 struct wall_shape {
     enum talus_boundary_shape kind;
+    struct wall_motion motion;
     bool eliminates;
     int body_index;   /* eliminates particles of this body only; -1: of all */
     bool source_rule; /* contact area h^2 a node */
@@ -84,7 +95,7 @@ struct wall_shape {
     int32_t line;     /* its grid line */
     bool lower;       /* the normal points to larger coordinates */
     int32_t box_low[3], box_high[3];
-    double point[3], normal[3], axis_1[3], axis_2[3], size[2];
+    double point[3], held_point[3], normal[3], axis_1[3], axis_2[3], size[2];
     double box_min[3], box_max[3];
     size_t first_face; /* into wall_set.faces; a box has its interior after its faces */
     bool face_exists[6];
@@ -102,7 +113,24 @@ struct node_faces {
 int wall_set_create(struct wall_set *walls, const struct talus_scene *scene,
                     const struct domain *domain);
 void wall_set_release(struct wall_set *walls);
+/* Puts a shape where its motion says. */
+void wall_shape_place(struct wall_shape *shape, const struct talus_boundary *boundary,
+                      const struct domain *domain);
 
+/* ---- wall_motion.c; `scene` and `domain` as at creation ---- */
+/* Before a step from `time` on: which boundaries act in it, how fast they are at its end (at rest
+ * up to t = 0) and on which nodes. */
+void wall_set_prepare(struct wall_set *walls, const struct talus_scene *scene,
+                      const struct domain *domain, double time, double time_step);
+/* After it: the boundaries have moved. The nodes follow when the next step is prepared. */
+void wall_set_move(struct wall_set *walls, const struct talus_scene *scene,
+                   const struct domain *domain, double time_step);
+/* For checkpoints: motions[boundary_count]. */
+void wall_set_get_motions(const struct wall_set *walls, struct wall_motion *motions);
+void wall_set_set_motions(struct wall_set *walls, const struct talus_scene *scene,
+                          const struct domain *domain, const struct wall_motion *motions);
+
+/* ---- wall_set.c, wall_folds.c, wall_distance.c ---- */
 /* Which faces act on node (i, j, k). */
 void wall_set_node_faces(const struct wall_set *walls, const struct domain *domain,
                          const int32_t node[3], struct node_faces *faces);

@@ -39,7 +39,8 @@ bool wall_set_eliminates(const struct wall_set *walls, const double position[3],
 {
     for (size_t index = 0; index < walls->boundary_count; index++) {
         const struct wall_shape *shape = &walls->shapes[index];
-        if (shape->eliminates && (shape->body_index < 0 || shape->body_index == body_index) &&
+        if (shape->eliminates && shape->motion.acts &&
+            (shape->body_index < 0 || shape->body_index == body_index) &&
             behind(shape, walls->axis_count, position))
             return true;
     }
@@ -50,7 +51,7 @@ bool wall_set_may_eliminate(const struct wall_set *walls, const double low[3], c
 {
     for (size_t index = 0; index < walls->boundary_count; index++) {
         const struct wall_shape *shape = &walls->shapes[index];
-        if (!shape->eliminates)
+        if (!shape->eliminates || !shape->motion.acts)
             continue;
         if (shape->kind == TALUS_BOUNDARY_BOX)
             return true;

@@ -14,7 +14,7 @@ static bool covers_cell(const struct wall_shape *shape, const struct domain *dom
         double offset = 0, half = 0;
         for (size_t axis = 0; axis < domain->axis_count; axis++) {
             const double centre = domain_position(domain, axis, cell[axis], 0.0);
-            offset += axes[index][axis] * (centre - shape->point[axis]);
+            offset += axes[index][axis] * (centre - shape->held_point[axis]);
             half += 0.5 * fabs(axes[index][axis]) * domain->cell[axis];
         }
         if (fabs(offset) + half > 0.5 * shape->size[index] + slack)
@@ -60,7 +60,7 @@ unsigned wall_set_cell_folds(const struct wall_set *walls, const struct domain *
     unsigned folds = 0;
     for (size_t index = 0; index < walls->boundary_count; index++) {
         const struct wall_shape *shape = &walls->shapes[index];
-        if (shape->eliminates)
+        if (shape->eliminates || !shape->motion.acts)
             continue;
         folds |= shape->kind == TALUS_BOUNDARY_BOX ? box_folds(shape, domain, cell)
                                                    : flat_folds(shape, domain, cell);

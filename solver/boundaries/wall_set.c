@@ -6,10 +6,33 @@
 #include <stdlib.h>
 #include <string.h>
 
-static int32_t nearest_line(const struct domain *domain, size_t axis, double coordinate)
+static int32_t moved_line(const struct domain *domain, size_t axis, double coordinate,
+                          const struct wall_motion *motion)
 {
-    const double line = (coordinate - domain->min[axis]) * domain->inverse_cell[axis];
-    return (int32_t)lround(fmin(fmax(line, -1e6), 2e6));
+    /* A whole number of cells, by which the line has moved. */
+    return domain_nearest_line(domain, axis, coordinate) +
+           (int32_t)lround(motion->snapped[axis] * domain->inverse_cell[axis]);
+}
+
+void wall_shape_place(struct wall_shape *shape, const struct talus_boundary *boundary,
+                      const struct domain *domain)
+{
+    const struct wall_motion *motion = &shape->motion;
+    for (size_t axis = 0; axis < domain->axis_count; axis++) {
+        shape->point[axis] = boundary->point[axis] + motion->moved[axis];
+        shape->held_point[axis] = boundary->point[axis] + motion->snapped[axis];
+        shape->box_min[axis] = boundary->box_min[axis] + motion->moved[axis];
+        shape->box_max[axis] = boundary->box_max[axis] + motion->moved[axis];
+        if (boundary->shape == TALUS_BOUNDARY_BOX) {
+            shape->box_low[axis] = moved_line(domain, axis, boundary->box_min[axis], motion);
+            shape->box_high[axis] = moved_line(domain, axis, boundary->box_max[axis], motion);
+            /* No material can be beyond the edge of the grid. */
+            shape->face_exists[2 * axis] = shape->box_low[axis] > 0;
+            shape->face_exists[2 * axis + 1] = shape->box_high[axis] < domain->cell_count[axis];
+        } else if (shape->axis == (int)axis) {
+            shape->line = moved_line(domain, axis, boundary->point[axis], motion);
+        }
+    }
 }
 
 static void shape_from_boundary(struct wall_shape *shape, const struct talus_boundary *boundary,
@@ -19,26 +42,18 @@ static void shape_from_boundary(struct wall_shape *shape, const struct talus_bou
     shape->source_rule = boundary->area_source_rule;
     shape->body_index = boundary->body_index;
     shape->axis = -1;
-    memcpy(shape->point, boundary->point, sizeof shape->point);
     memcpy(shape->normal, boundary->normal, sizeof shape->normal);
     memcpy(shape->axis_1, boundary->axis_1, sizeof shape->axis_1);
     memcpy(shape->axis_2, boundary->axis_2, sizeof shape->axis_2);
     memcpy(shape->size, boundary->size, sizeof shape->size);
-    memcpy(shape->box_min, boundary->box_min, sizeof shape->box_min);
-    memcpy(shape->box_max, boundary->box_max, sizeof shape->box_max);
-    for (size_t axis = 0; axis < domain->axis_count; axis++) {
-        if (boundary->shape == TALUS_BOUNDARY_BOX) {
-            shape->box_low[axis] = nearest_line(domain, axis, boundary->box_min[axis]);
-            shape->box_high[axis] = nearest_line(domain, axis, boundary->box_max[axis]);
-            /* No material can be beyond the edge of the grid. */
-            shape->face_exists[2 * axis] = shape->box_low[axis] > 0;
-            shape->face_exists[2 * axis + 1] = shape->box_high[axis] < domain->cell_count[axis];
-        } else if (fabs(fabs(boundary->normal[axis]) - 1.0) < 1e-9) {
+    shape->motion.acts = 1;
+    for (size_t axis = 0; axis < domain->axis_count && shape->kind != TALUS_BOUNDARY_BOX; axis++) {
+        if (fabs(fabs(boundary->normal[axis]) - 1.0) < 1e-9) {
             shape->axis = (int)axis;
-            shape->line = nearest_line(domain, axis, boundary->point[axis]);
             shape->lower = boundary->normal[axis] > 0;
         }
     }
+    wall_shape_place(shape, boundary, domain);
 }
 
 static void face_from_boundary(struct wall_face *face, const struct talus_boundary *boundary,
@@ -49,6 +64,8 @@ static void face_from_boundary(struct wall_face *face, const struct talus_bounda
     face->friction_coefficient = source->friction_coefficient;
     face->adhesion = source->adhesion;
     face->turbulence = source->turbulence;
+    face->prescribed = face->condition->prescribes ? boundary->prescribed : 0;
+    face->moves = boundary->prescribed != 0 && (!boundary->stays || face->prescribed != 0);
     face->wall = boundary->wall;
     face->release = boundary->tension_release && face_index >= 0;
     face->tension_force = boundary->tension_force;
@@ -61,6 +78,10 @@ static void face_from_boundary(struct wall_face *face, const struct talus_bounda
             face->normal[face_index / 2] = face_index % 2 == 0 ? -1.0 : 1.0;
         else
             face->condition = boundary_find("stick");
+    }
+    if (face_index < 0) {
+        face->prescribed = 0;
+        face->moves = boundary->prescribed != 0 && !boundary->stays;
     }
     for (size_t axis = 0; axis < domain->axis_count; axis++)
         face->half_cell =
@@ -83,6 +104,7 @@ int wall_set_create(struct wall_set *walls, const struct talus_scene *scene,
         const struct talus_boundary *boundary = &scene->boundaries[index];
         struct wall_shape *shape = &walls->shapes[index];
         shape_from_boundary(shape, boundary, domain);
+        walls->timed = walls->timed || boundary->prescribed != 0 || boundary->timed;
         shape->first_face = walls->face_count;
         for (size_t face = 0; face < boundary->face_count; face++) {
             face_from_boundary(&walls->faces[walls->face_count++], boundary, domain, index,
@@ -190,7 +212,7 @@ static void plane_faces(const struct wall_shape *shape, const struct domain *dom
         width = fmax(width, fabs(shape->normal[axis]) * domain->cell[axis]);
         steepest = fmax(steepest, fabs(shape->normal[axis]));
     }
-    const double distance = along(shape->normal, shape->point, position);
+    const double distance = along(shape->normal, shape->held_point, position);
     if (distance > 0.5 * width)
         return;
     const double area = node_circle(domain, node[0], false, false) * domain_cell_volume(domain) /
@@ -207,14 +229,14 @@ static void rectangle_faces(const struct wall_shape *shape, const struct domain 
         width = fmax(width, fabs(shape->normal[axis]) * domain->cell[axis]);
     }
     if (shape->axis >= 0 ? node[shape->axis] != shape->line
-                         : fabs(along(shape->normal, shape->point, position)) > 0.5 * width)
+                         : fabs(along(shape->normal, shape->held_point, position)) > 0.5 * width)
         return;
     const double smallest = domain_smallest_cell(domain);
     double area = domain_cell_volume(domain) / fmax(width, 1e-300);
     double missing = 0; /* on this side along x nothing of the face belongs to the node */
     const double *axes[2] = {shape->axis_1, shape->axis_2};
     for (size_t index = 0; index + 1 < domain->axis_count; index++) {
-        const double offset = along(axes[index], shape->point, position);
+        const double offset = along(axes[index], shape->held_point, position);
         if (fabs(offset) > 0.5 * shape->size[index] + LINE_TOLERANCE * smallest)
             return;
         if (shape->source_rule ||
@@ -232,7 +254,7 @@ void wall_set_node_faces(const struct wall_set *walls, const struct domain *doma
     faces->count = 0;
     for (size_t index = 0; index < walls->boundary_count; index++) {
         const struct wall_shape *shape = &walls->shapes[index];
-        if (shape->eliminates)
+        if (shape->eliminates || !shape->motion.acts)
             continue;
         if (shape->kind == TALUS_BOUNDARY_BOX)
             box_faces(shape, domain, node, faces);

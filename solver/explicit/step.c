@@ -8,6 +8,7 @@
 
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 int run_prepare_tiles(struct run *run)
 {
@@ -94,21 +95,48 @@ static void take_passes(struct run *run, struct stage_clock *clock)
     run_pass(run, first ? move_tile : advance_tile);
 }
 
+/* What the last step left at the nodes, once more. */
+static void renew_nodes(struct run *run)
+{
+    struct node_blocks *nodes = &run->grid.nodes;
+    memset(nodes->values, 0, nodes->count * node_block_bytes(nodes));
+    partition_outbox(run);
+    run_pass(run, start_tile);
+}
+
+/* Blocks and walls as the step needs them. */
+static enum talus_status prepare_grid(struct run *run, struct talus_error *error)
+{
+    const uint64_t walls = run->walls.change_count;
+    enum talus_status status = run_purge(run, error);
+    if (status == TALUS_OK && run_prepare_walls(run) != 0)
+        status = talus_error_set(error, TALUS_MEMORY, "memory", "", "out of memory at step %llu",
+                                 (unsigned long long)run->step);
+    if (status != TALUS_OK)
+        return status;
+    /* Shape functions that fold at walls have changed with them: mass and forces at the nodes must
+     * be of the same ones as the momentum that is to come. */
+    if (walls != run->walls.change_count && run->shape->reach > 0)
+        renew_nodes(run);
+    partition_outbox(run);
+    return TALUS_OK;
+}
+
 enum talus_status run_take_step(struct run *run, struct talus_error *error)
 {
     struct stage_clock *clock = run->scratch[0].clock;
     stage_clock_start(clock);
-    enum talus_status status = run_purge(run, error);
+    enum talus_status status = prepare_grid(run, error);
     if (status != TALUS_OK) {
         run->failed = true;
         return status;
     }
-    partition_outbox(run);
     run_set_gravity(run);
     stage_clock_lap(clock, STAGE_HOUSEKEEPING);
     run->measures = run->sample_expected || health_checks_energy(run->step + 1);
     run->sample_expected = false;
     take_passes(run, clock);
+    run_move_walls(run);
     run->time += run->time_step;
     run->interval += run->time_step;
     run->last_time_step = run->time_step;
@@ -146,6 +174,7 @@ enum talus_status run_start(struct run *run, struct talus_error *error)
 {
     run->wall_node_count = 0;
     run->walled_block_count = 0;
+    wall_set_prepare(&run->walls, &run->scene, &run->grid.domain, run->time, 0);
     if (sparse_grid_purge(&run->grid) != 0 || run_find_walls(run) != 0 ||
         run_prepare_tiles(run) != 0 || sparse_grid_pack(&run->grid) != 0 ||
         run_reserve_scratch(run) != 0)

@@ -113,3 +113,19 @@ int run_find_walls(struct run *run)
     run->walled_block_count = nodes->count;
     return 0;
 }
+
+int run_prepare_walls(struct run *run)
+{
+    const uint64_t before = run->walls.change_count;
+    wall_set_prepare(&run->walls, &run->scene, &run->grid.domain, run->time, run->time_step);
+    if (run->walls.change_count == before)
+        return 0;
+    run->wall_node_count = 0;
+    run->walled_block_count = 0;
+    return run_find_walls(run);
+}
+
+void run_move_walls(struct run *run)
+{
+    wall_set_move(&run->walls, &run->scene, &run->grid.domain, run->time_step);
+}

@@ -53,6 +53,8 @@ static bool boundary_is_uniform(const struct talus_boundary *boundary, size_t ax
                                 const double range[2])
 {
     double along = fabs(boundary->normal[axis]);
+    if (boundary->velocity[axis] != 0.0 || boundary->velocity_tables[axis].count > 0)
+        return false;
     if (boundary->shape == TALUS_BOUNDARY_BOX)
         return boundary->box_min[axis] <= range[0] && boundary->box_max[axis] >= range[1];
     if (along > 1.0 - 1e-9) /* a side wall: only without friction */
@@ -127,7 +129,9 @@ static bool boundaries_mirror(const struct talus_scene *scene, size_t axis, doub
                               const struct talus_boundary *a, const struct talus_boundary *b)
 {
     bool same = a->shape == b->shape && a->wall == b->wall &&
-                a->tension_release == b->tension_release && a->shape != TALUS_BOUNDARY_FACE;
+                a->tension_release == b->tension_release && a->shape != TALUS_BOUNDARY_FACE &&
+                a->prescribed == 0 && b->prescribed == 0 && a->timed == b->timed &&
+                a->from == b->from && a->until == b->until;
     for (size_t face = 0; face < a->face_count && same; face++) {
         size_t other = a->shape == TALUS_BOUNDARY_BOX && face / 2 == axis ? face ^ 1u : face;
         same = a->faces[face].condition_index == b->faces[other].condition_index &&

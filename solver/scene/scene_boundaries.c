@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Boundaries: planes, faces and boxes, and what they do. */
-#include "scene/scene_condition.h"
+#include "scene/scene_boundary.h"
 #include "scene/scene_face.h"
 #include "scene/scene_sections.h"
 
@@ -8,13 +8,6 @@
 
 #include <string.h>
 
-struct boundary_keys {
-    struct scene_condition condition; /* first: see SCENE_CONDITION_FIELDS */
-    struct scene_condition faces[6];  /* overrides; index SIZE_MAX: none */
-    struct talus_boundary boundary;
-    double moment_about[3]; /* NAN: not given */
-    const char *name;
-};
 #define AT(member) offsetof(struct boundary_keys, boundary.member)
 
 static const char *const wall_words[] = {"stop", "keep", NULL};
@@ -223,11 +216,39 @@ const struct scene_field scene_boundary_fields[] = {
      .read = read_body,
      .schema = body_schema,
      .meaning = "with eliminate: takes out particles of this body only"},
-    {.key = "velocity", .unsupported = true},
-    {.key = "components", .unsupported = true},
-    {.key = "stays", .unsupported = true},
-    {.key = "from", .unsupported = true},
-    {.key = "until", .unsupported = true},
+    {.key = "velocity",
+     .kind = SCENE_CUSTOM,
+     .unit = "m/s",
+     .read = scene_boundary_velocity_read,
+     .schema = scene_boundary_velocity_schema,
+     .meaning = "with velocity: how the material moves; components may be [[t, value], ...]"},
+    {.key = "components",
+     .kind = SCENE_CUSTOM,
+     .unit = "1",
+     .read = scene_boundary_components_read,
+     .schema = scene_boundary_components_schema,
+     .meaning = "with velocity: axes on which it is prescribed; default all"},
+    {.key = "stays",
+     .kind = SCENE_BOOLEAN,
+     .unit = "1",
+     .offset = AT(stays),
+     .meaning = "with velocity: the boundary does not move along with the material"},
+    {.key = "from",
+     .kind = SCENE_NUMBER,
+     .unit = "s",
+     .minimum = -INFINITY,
+     .maximum = INFINITY,
+     .default_value = NAN,
+     .offset = offsetof(struct boundary_keys, from),
+     .meaning = "the boundary acts from this time on; default always"},
+    {.key = "until",
+     .kind = SCENE_NUMBER,
+     .unit = "s",
+     .minimum = -INFINITY,
+     .maximum = INFINITY,
+     .default_value = NAN,
+     .offset = offsetof(struct boundary_keys, until),
+     .meaning = "the boundary acts up to this time (a gate); default always"},
     {.key = "phase", .unsupported = true},
     {.key = NULL},
 };
@@ -338,9 +359,10 @@ static void read_boundary(struct scene_reader *reader, const struct scene_path *
         scene_condition_init(&keys.faces[face]);
     for (size_t k = 0; k < reader->axis_count; k++)
         keys.boundary.box_min[k] = keys.boundary.box_max[k] = keys.boundary.normal[k] = NAN;
-    keys.moment_about[0] = NAN;
+    keys.moment_about[0] = keys.from = keys.until = NAN;
     scene_fields_read(reader, path, scene_boundary_fields, given, &keys, effective);
     finish_shape(reader, path, given, &keys, effective);
+    scene_boundary_motion_finish(reader, path, given, &keys, effective);
     check_filter(reader, path, &keys);
     finish_moment(reader, &keys, effective);
     keys.boundary.name = scene_entry_name(reader, path, keys.name, "boundary", effective);

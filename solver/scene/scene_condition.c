@@ -13,7 +13,6 @@ static const char *const condition_words[] = {
 #undef BOUNDARY
     NULL,
 };
-static const char *const condition_lacking[] = {"velocity", NULL};
 
 const struct scene_field scene_condition_fields[] = {
     SCENE_CONDITION_FIELDS,
@@ -24,7 +23,7 @@ void scene_condition_name_read(struct scene_reader *reader, const struct scene_p
                                const json_t *given, void *target, json_t *effective)
 {
     struct scene_condition *condition = target;
-    int index = scene_choice_read(reader, path, given, condition_words, condition_lacking);
+    int index = scene_choice_read(reader, path, given, condition_words, NULL);
     if (index < 0)
         return;
     condition->index = (size_t)index;
@@ -98,6 +97,11 @@ const char *scene_condition_name(size_t index)
 bool scene_condition_eliminates(size_t index)
 {
     return boundary_table[index]->eliminates;
+}
+
+bool scene_condition_prescribes(size_t index)
+{
+    return boundary_table[index]->prescribes;
 }
 
 json_t *scene_conditions_describe(void)

@@ -68,6 +68,8 @@ void scene_condition_finish(struct scene_reader *reader, const struct scene_path
 const char *scene_condition_name(size_t index);
 /* True if the condition takes particles out. */
 bool scene_condition_eliminates(size_t index);
+/* True if the condition prescribes the boundary's velocity. */
+bool scene_condition_prescribes(size_t index);
 /* [{"condition","summary","reference","parameters"}] */
 json_t *scene_conditions_describe(void);
 

@@ -159,7 +159,8 @@ static enum talus_status check_obstacles(const struct talus_scene *scene, size_t
 {
     for (size_t index = 0; index < scene->boundary_count; index++) {
         const struct talus_boundary *boundary = &scene->boundaries[index];
-        if (boundary->shape != TALUS_BOUNDARY_BOX ||
+        const bool later = boundary->timed && boundary->from > 0.0;
+        if (boundary->shape != TALUS_BOUNDARY_BOX || later ||
             (boundary->body_index >= 0 && (size_t)boundary->body_index != body_index))
             continue;
         const double share = share_in_box(scene, body_index, shape, boundary);

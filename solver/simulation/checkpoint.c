@@ -7,7 +7,11 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { CHECKPOINT_VERSION = 5, BLOB_COUNT = 10 };
+enum { CHECKPOINT_VERSION = 6, BLOB_COUNT = 11 };
+
+static const char *const blob_names[BLOB_COUNT] = {
+    "header",     "blocks",  "particles",       "node_places",   "node_values", "faces",
+    "boundaries", "windows", "probe_particles", "wall_impulses", "wall_motions"};
 
 struct checkpoint_header {
     uint32_t version, double_count, node_component_count, lane_count;
@@ -154,10 +158,8 @@ const struct talus_blob *talus_simulation_checkpoint(struct talus_simulation *si
         run->scene.boundary_count * sizeof *run->boundaries,
         windows_bytes(run),
         run->scene.probe_count * sizeof *simulation->probe_ids,
-        run->wall_node_count * 3 * sizeof(double)};
-    static const char *const names[BLOB_COUNT] = {
-        "header", "blocks",     "particles", "node_places",     "node_values",
-        "faces",  "boundaries", "windows",   "probe_particles", "wall_impulses"};
+        run->wall_node_count * 3 * sizeof(double),
+        run->scene.boundary_count * sizeof(struct wall_motion)};
     size_t total = 0;
     for (size_t index = 0; index < BLOB_COUNT; index++)
         total += (sizes[index] + 63) / 64 * 64;
@@ -170,7 +172,7 @@ const struct talus_blob *talus_simulation_checkpoint(struct talus_simulation *si
     unsigned char *next = simulation->blob_memory;
     unsigned char *data[BLOB_COUNT];
     for (size_t index = 0; index < BLOB_COUNT; index++) {
-        (void)strncpy(simulation->blobs[index].name, names[index],
+        (void)strncpy(simulation->blobs[index].name, blob_names[index],
                       sizeof simulation->blobs[index].name - 1);
         simulation->blobs[index].data = data[index] = next;
         simulation->blobs[index].bytes = sizes[index];
@@ -185,6 +187,7 @@ const struct talus_blob *talus_simulation_checkpoint(struct talus_simulation *si
                                              run->boundaries,
                                              NULL,
                                              simulation->probe_ids,
+                                             NULL,
                                              NULL};
     for (size_t index = 0; index < BLOB_COUNT; index++) {
         if (sources[index] != NULL && sizes[index] > 0)
@@ -193,6 +196,7 @@ const struct talus_blob *talus_simulation_checkpoint(struct talus_simulation *si
     save_blocks(run, (struct checkpoint_block *)(void *)data[1], data[2]);
     save_windows(run, data[7]);
     save_wall_impulses(run, data[9]);
+    wall_set_get_motions(&run->walls, (struct wall_motion *)(void *)data[10]);
     *count = simulation->blob_count = BLOB_COUNT;
     return simulation->blobs;
 }
@@ -225,7 +229,8 @@ static bool header_fits(const struct run *run, const struct checkpoint_header *h
            found[5]->bytes == run->walls.face_count * sizeof *run->faces &&
            found[6]->bytes == run->scene.boundary_count * sizeof *run->boundaries &&
            found[8]->bytes == run->scene.probe_count * sizeof(uint32_t) &&
-           found[9]->bytes == header->wall_node_count * 3 * sizeof(double);
+           found[9]->bytes == header->wall_node_count * 3 * sizeof(double) &&
+           found[10]->bytes == run->scene.boundary_count * sizeof(struct wall_motion);
 }
 
 static bool restore_nodes(struct run *run, const struct checkpoint_header *header,
@@ -332,6 +337,7 @@ static bool restore_state(struct talus_simulation *simulation,
         return false;
     if (found[8]->bytes > 0)
         memcpy(simulation->probe_ids, found[8]->data, found[8]->bytes);
+    wall_set_set_motions(&run->walls, &run->scene, &run->grid.domain, found[10]->data);
     return run_find_walls(run) == 0 && run_prepare_tiles(run) == 0 &&
            run_reserve_scratch(run) == 0 && restore_wall_impulses(run, found[9]);
 }
@@ -342,16 +348,13 @@ enum talus_status talus_simulation_restore(const struct talus_scene *scene,
                                            struct talus_simulation **simulation,
                                            struct talus_error *error)
 {
-    static const char *const names[BLOB_COUNT] = {
-        "header", "blocks",     "particles", "node_places",     "node_values",
-        "faces",  "boundaries", "windows",   "probe_particles", "wall_impulses"};
     const struct talus_blob *found[BLOB_COUNT];
     *simulation = NULL;
     for (size_t index = 0; index < BLOB_COUNT; index++) {
-        found[index] = find_blob(blobs, blob_count, names[index]);
+        found[index] = find_blob(blobs, blob_count, blob_names[index]);
         if (found[index] == NULL)
             return talus_error_set(error, TALUS_INVALID, "checkpoint", "",
-                                   "the checkpoint has no part '%s'", names[index]);
+                                   "the checkpoint has no part '%s'", blob_names[index]);
     }
     struct talus_simulation *created = calloc(1, sizeof *created);
     if (created == NULL)

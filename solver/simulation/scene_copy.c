@@ -62,6 +62,8 @@ static void copy_named(const struct talus_scene *scene, struct talus_scene *copy
         duplicate(scene->boundaries, scene->boundary_count * sizeof *scene->boundaries, failed);
     for (size_t index = 0; copy->boundaries != NULL && index < scene->boundary_count; index++) {
         copy->boundaries[index].name = duplicate_text(scene->boundaries[index].name, failed);
+        if (time_table_duplicate(copy->boundaries[index].velocity_tables, 3) != 0)
+            *failed = true;
         copy->boundary_count++;
     }
     copy->probes = duplicate(scene->probes, scene->probe_count * sizeof *scene->probes, failed);

@@ -129,6 +129,17 @@ static void add_bodies(uint64_t *hash, const struct talus_scene *scene)
     }
 }
 
+static void add_tables(uint64_t *hash, const struct talus_time_table *tables, size_t count)
+{
+    for (size_t index = 0; index < count; index++) {
+        add_number(hash, tables[index].count);
+        if (tables[index].count == 0)
+            continue;
+        add_reals(hash, tables[index].time, tables[index].count);
+        add_reals(hash, tables[index].value, tables[index].count);
+    }
+}
+
 static void add_boundary(uint64_t *hash, const struct talus_boundary *boundary)
 {
     add_text(hash, boundary->name);
@@ -147,6 +158,13 @@ static void add_boundary(uint64_t *hash, const struct talus_boundary *boundary)
     add_number(hash, boundary->tension_release);
     add_number(hash, boundary->area_source_rule);
     add_number(hash, (uint64_t)boundary->body_index);
+    add_number(hash, boundary->prescribed);
+    add_number(hash, boundary->stays);
+    add_reals(hash, boundary->velocity, 3);
+    add_tables(hash, boundary->velocity_tables, 3);
+    add_number(hash, boundary->timed);
+    add_reals(hash, &boundary->from, 1);
+    add_reals(hash, &boundary->until, 1);
     add_number(hash, boundary->face_count);
     for (size_t face = 0; face < boundary->face_count; face++) {
         add_number(hash, boundary->faces[face].condition_index);

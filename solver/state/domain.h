@@ -53,4 +53,12 @@ static inline double domain_node_position(const struct domain *domain, size_t ax
     return domain->min[axis] + (double)node * domain->cell[axis];
 }
 
+/* The grid line nearest to a coordinate, kept within what fits. */
+static inline int32_t domain_nearest_line(const struct domain *domain, size_t axis,
+                                          double coordinate)
+{
+    const double line = (coordinate - domain->min[axis]) * domain->inverse_cell[axis];
+    return (int32_t)lround(fmin(fmax(line, -1e6), 2e6));
+}
+
 #endif

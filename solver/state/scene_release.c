@@ -2,6 +2,8 @@
 #include "state/time_table.h"
 #include "talus/scene.h"
 
+#include "state/time_table.h"
+
 #include <stdlib.h>
 #include <string.h>
 
@@ -17,8 +19,10 @@ void talus_scene_release(struct talus_scene *scene)
         free(scene->bodies[index].point_positions);
         free(scene->bodies[index].point_volumes);
     }
-    for (size_t index = 0; index < scene->boundary_count; index++)
+    for (size_t index = 0; index < scene->boundary_count; index++) {
         free(scene->boundaries[index].name);
+        time_table_release(scene->boundaries[index].velocity_tables, 3);
+    }
     for (size_t index = 0; index < scene->probe_count; index++)
         free(scene->probes[index].name);
     for (size_t index = 0; index < scene->reference_count; index++) {

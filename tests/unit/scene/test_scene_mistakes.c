@@ -261,7 +261,6 @@ static const struct mistake mistakes[] = {
     {BASE_FLUID, "/bodies/0/initial_stress", "[-1, -2, -1, 0, 0, 0]", NULL, "contradiction"},
     /* ---- boundaries ---- */
     {BASE_PLANE, "/boundaries/0/condition", NULL, NULL, "required"},
-    {BASE_PLANE, "/boundaries/0/condition", "\"velocity\"", NULL, "unsupported"},
     {BASE_PLANE, "/boundaries/0/condition", "\"slide\"", NULL, "unknown_value"},
     {BASE_PLANE, "/boundaries/0/condition", "\"slip\"", "/boundaries/0/friction_angle",
      "contradiction"},
@@ -278,7 +277,27 @@ static const struct mistake mistakes[] = {
     {BASE_PLANE, "/boundaries/1/adhesion", "10", NULL, "contradiction"},
     {BASE_PLANE, "/boundaries/1/faces", "{\"x_min\": {\"condition\": \"slip\", \"turbulence\": 9}}",
      "/boundaries/1/faces/x_min/turbulence", "contradiction"},
-    {BASE_PLANE, "/boundaries/0/until", "1", NULL, "unsupported"},
+    {BASE_PLANE, "/boundaries/1/condition", "\"velocity\"", "/boundaries/1/velocity", "required"},
+    {BASE_PLANE, "/boundaries/1/velocity", "[1, 0]", NULL, "contradiction"},
+    {BASE_PLANE, "/boundaries/1/components", "[\"x\"]", NULL, "contradiction"},
+    {BASE_PLANE, "/boundaries/1/stays", "true", NULL, "contradiction"},
+    {BASE_PLANE, "/boundaries/-",
+     "{\"plane\": {\"point\": [0, 8], \"normal\": [0, -1]}, \"condition\": \"velocity\","
+     "\"velocity\": [0, [[1, 0], [1, -2]]]}",
+     "/boundaries/2/velocity/1/1/0", "range"},
+    {BASE_PLANE, "/boundaries/-",
+     "{\"plane\": {\"point\": [0, 8], \"normal\": [0, -1]}, \"condition\": \"velocity\","
+     "\"velocity\": [0, -1], \"components\": [\"z\"]}",
+     "/boundaries/2/components/0", "unknown_value"},
+    {BASE_PLANE, "/boundaries/-",
+     "{\"plane\": {\"point\": [0, 8], \"normal\": [0, -1]}, \"condition\": \"velocity\","
+     "\"velocity\": [0, -1], \"wall\": \"keep\"}",
+     "/boundaries/2/wall", "contradiction"},
+    {BASE_PLANE, "/boundaries/-",
+     "{\"plane\": {\"point\": [0, 8], \"normal\": [0, -1]}, \"condition\": \"slip\","
+     "\"from\": 2, \"until\": 1}",
+     "/boundaries/2/until", "range"},
+    {BASE_PLANE, "/boundaries/0/until", "\"later\"", NULL, "type"},
     {BASE_PLANE, "/boundaries/0/wall", "\"hold\"", NULL, "unknown_value"},
     {BASE_PLANE, "/boundaries/0/tension_release", "\"yes\"", NULL, "type"},
     {BASE_PLANE, "/boundaries/0/body", "\"heep\"", NULL, "unknown_name"},

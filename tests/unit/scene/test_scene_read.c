@@ -171,6 +171,37 @@ static void boxes_have_faces_of_their_own(void **state)
     fixture_result_release(&result);
 }
 
+static void boundaries_move_and_come_and_go(void **state)
+{
+    (void)state;
+    json_t *scene = fixture_scene(BASE_PLANE);
+    fixture_change(scene, "/boundaries/-",
+                   "{\"plane\": {\"point\": [0, 8], \"normal\": [0, -1]},"
+                   " \"condition\": \"velocity\", \"velocity\": [0, [[0, 0], [1, -2]]],"
+                   " \"components\": [\"y\"], \"until\": 1.5}");
+    fixture_change(scene, "/boundaries/-",
+                   "{\"plane\": {\"point\": [0, 0], \"normal\": [0, 1]},"
+                   " \"condition\": \"velocity\", \"velocity\": [3, 0], \"stays\": true,"
+                   " \"from\": 0.5}");
+    struct fixture_result result = read_valid(scene);
+    const struct talus_boundary *piston = &result.scene.boundaries[2];
+    assert_int_equal(piston->prescribed, 2);
+    assert_int_equal(piston->velocity_tables[0].count, 0);
+    assert_int_equal(piston->velocity_tables[1].count, 2);
+    ASSERT_WITHIN(piston->velocity_tables[1].value[1], -2.0, 0.0);
+    assert_false(piston->stays);
+    assert_true(piston->timed && isinf(piston->from) && piston->from < 0);
+    ASSERT_WITHIN(piston->until, 1.5, 0.0);
+    const struct talus_boundary *belt = &result.scene.boundaries[3];
+    assert_int_equal(belt->prescribed, 3);
+    assert_true(belt->stays && belt->timed && isinf(belt->until));
+    ASSERT_WITHIN(belt->velocity[0], 3.0, 0.0);
+    ASSERT_WITHIN(belt->from, 0.5, 0.0);
+    assert_false(result.scene.boundaries[0].timed);
+    assert_int_equal(result.scene.boundaries[0].prescribed, 0);
+    fixture_result_release(&result);
+}
+
 static void initial_stresses_have_many_forms(void **state)
 {
     (void)state;
@@ -379,6 +410,7 @@ int main(void)
         cmocka_unit_test(faces_have_axes_and_sizes),
         cmocka_unit_test(faces_in_a_plane_are_lines),
         cmocka_unit_test(boxes_have_faces_of_their_own),
+        cmocka_unit_test(boundaries_move_and_come_and_go),
         cmocka_unit_test(initial_stresses_have_many_forms),
         cmocka_unit_test(grids_are_rounded_up),
         cmocka_unit_test(the_effective_scene_is_a_fixed_point),

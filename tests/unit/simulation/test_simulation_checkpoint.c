@@ -31,6 +31,14 @@ static void build(struct simulation_fixture *fixture)
     simulation_fixture_add_obstacle(fixture, "pile", (double[3]){3.2, 0.2}, (double[3]){3.4, 0.4},
                                     "slip", 0);
     simulation_fixture_add_plane(fixture, "sink", 0, 2.9, -1, "eliminate", 0);
+    /* A ram catches up with the heap, over many grid lines, and is gone at the end. */
+    struct talus_boundary *ram =
+        simulation_fixture_add_plane(fixture, "ram", 0, 0.93, 1, "velocity", 0);
+    ram->prescribed = 1;
+    ram->velocity[0] = 9.7;
+    ram->timed = true;
+    ram->from = -INFINITY;
+    ram->until = 0.06;
     struct talus_probe *probe = simulation_fixture_add_probe(fixture, "point", TALUS_PROBE_POINT);
     probe->at[0] = 1.0;
     probe->at[1] = 0.3;
