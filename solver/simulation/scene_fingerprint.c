@@ -129,17 +129,6 @@ static void add_bodies(uint64_t *hash, const struct talus_scene *scene)
     }
 }
 
-static void add_tables(uint64_t *hash, const struct talus_time_table *tables, size_t count)
-{
-    for (size_t index = 0; index < count; index++) {
-        add_number(hash, tables[index].count);
-        if (tables[index].count == 0)
-            continue;
-        add_reals(hash, tables[index].time, tables[index].count);
-        add_reals(hash, tables[index].value, tables[index].count);
-    }
-}
-
 static void add_boundary(uint64_t *hash, const struct talus_boundary *boundary)
 {
     add_text(hash, boundary->name);
