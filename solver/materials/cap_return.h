@@ -280,7 +280,8 @@ TALUS_INLINE bool cap_update_stress(const struct cap *cap, const struct material
     bool flowed = false;
     for (size_t begin = 0; begin < slots; begin += MATERIAL_CHUNK) {
         const size_t count = chunk_count(slots, begin);
-        invariants_of_trial(law.stiffness, batch, components, begin, count, false, &invariants);
+        invariants_of_trial(law.stiffness, batch, components, begin, count, INVARIANTS_OF_SCALING,
+                            &invariants);
         cap_mark_yielding(&law, batch, begin, count, &invariants);
         if (!any_flowed(batch, begin, count)) {
             elasticity_apply(law.stiffness, batch, components, begin, count);
@@ -290,7 +291,8 @@ TALUS_INLINE bool cap_update_stress(const struct cap *cap, const struct material
         cap_return_to_cone(&law, batch, begin, count, &invariants);
         if (number_bits(count, batch->plastic_strain + begin).negative)
             cap_return_to_circle(&law, batch, begin, count, &invariants);
-        invariants_apply(law.stiffness, batch, components, begin, count, &invariants);
+        invariants_apply(law.stiffness, batch, components, begin, count, INVARIANTS_OF_SCALING,
+                         &invariants);
     }
     return flowed;
 }

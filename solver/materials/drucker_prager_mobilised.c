@@ -17,7 +17,8 @@ static void surface_slopes(size_t count, const real *tangent, const struct invar
 TALUS_INLINE bool update_stress_kernel(const struct mobilised *mobilised,
                                        const struct material_batch *batch, size_t components)
 {
-    return mobilised_update(mobilised, batch, components, surface_slopes, false);
+    return mobilised_update(mobilised, batch, components, surface_slopes, INVARIANTS_OF_SCALING,
+                            NULL);
 }
 
 static bool update_stress(const void *constants, const struct material_batch *batch)

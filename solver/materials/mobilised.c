@@ -228,15 +228,9 @@ void mobilised_mark_yielding(const struct mobilised *mobilised, const struct mat
     }
 }
 
-/* A return on its way through two loops. */
-struct cone_flow {
-    MATERIAL_ALIGNED real deviatoric[MATERIAL_CHUNK]; /* |dev| of the plastic strain increment */
-    MATERIAL_ALIGNED real left[MATERIAL_CHUNK];       /* |s| returned [Pa] */
-};
-
 static void return_stress(const struct mobilised *mobilised, size_t count, const real *slopes,
                           const real *flow_slopes, struct invariants *invariants,
-                          struct cone_flow *flow)
+                          struct mobilised_flow *flow)
 {
     const struct stiffness stiffness = elasticity_stiffness(&mobilised->elasticity);
     const real apex = (real)mobilised->apex;
@@ -278,7 +272,7 @@ static void return_stress(const struct mobilised *mobilised, size_t count, const
 /* Plastic strain, dissipation and history of a return. */
 static void book_flow(const struct mobilised *mobilised, const struct material_batch *batch,
                       size_t begin, size_t count, const struct invariants *invariants,
-                      const struct cone_flow *flow)
+                      const struct mobilised_flow *flow)
 {
     const real total_share = (real)mobilised->total_share;
     const real deviatoric_share = (real)mobilised->deviatoric_share;
@@ -303,15 +297,18 @@ static void book_flow(const struct mobilised *mobilised, const struct material_b
 
 void mobilised_return(const struct mobilised *mobilised, const struct material_batch *batch,
                       size_t begin, size_t count, const real *slopes,
-                      const struct mobilised_angles *angles, struct invariants *invariants)
+                      const struct mobilised_angles *angles, mobilised_potential *potential,
+                      struct invariants *invariants)
 {
     MATERIAL_ALIGNED real flow_slope[MATERIAL_CHUNK];
-    struct cone_flow flow;
+    struct mobilised_flow flow;
     count = whole_rows(count);
     if (has_constant_dilation(mobilised))
         fill(count, cone_slope_of((real)mobilised->flow_tangent), flow_slope);
     else
         mobilised_cone_slopes(count, angles->flow_tangent, flow_slope);
     return_stress(mobilised, count, slopes, flow_slope, invariants, &flow);
+    if (potential != NULL)
+        potential(mobilised, count, batch->plastic_strain + begin, angles, invariants, &flow);
     book_flow(mobilised, batch, begin, count, invariants, &flow);
 }

@@ -91,25 +91,41 @@ void mobilised_mark_yielding(const struct mobilised *mobilised, const struct mat
                              size_t begin, size_t count, const real *slopes,
                              const struct invariants *invariants);
 
+/* A return on its way through two loops. */
+struct mobilised_flow {
+    MATERIAL_ALIGNED real deviatoric[MATERIAL_CHUNK]; /* |dev| of the plastic strain increment */
+    MATERIAL_ALIGNED real left[MATERIAL_CHUNK]; /* deviator returned, along that increment [Pa] */
+};
+
+/* A potential of a model's own: replaces the return of `count` slots where it wants to. `yields`:
+ * positive where a trial is beyond the surface. */
+typedef void mobilised_potential(const struct mobilised *mobilised, size_t count,
+                                 const real *yields, const struct mobilised_angles *angles,
+                                 struct invariants *invariants, struct mobilised_flow *flow);
+
 /* Returns trials to the surface along the flow |s| + flow_slope I1 of the angles' dilation, or to
  * the apex where the line ends there (Mast 2013, sec. 3.6.1, without hardening inside the step). A
  * flow slope above the slope would make plastic work negative and is cut; so would contraction
  * under tensile mean stress (Mast leaves it open), which ends at I1 = 0: the potential is |s|
- * beyond, the wedge between the two directions returns to I1 = 0. Writes the `out` of the
- * invariants, plastic strain, dissipation and the history: lambda and I1 at the end of the step. */
+ * beyond, the wedge between the two directions returns to I1 = 0. `potential` (or NULL) has the
+ * last word. Writes the `out` of the invariants, plastic strain, dissipation and the history:
+ * lambda and I1 at the end of the step. */
 void mobilised_return(const struct mobilised *mobilised, const struct material_batch *batch,
                       size_t begin, size_t count, const real *slopes,
-                      const struct mobilised_angles *angles, struct invariants *invariants);
+                      const struct mobilised_angles *angles, mobilised_potential *potential,
+                      struct invariants *invariants);
 
 /* What a model with mobilised friction adds: slopes |s| / (apex - I1) of its surface in the
  * direction of the trial, from the tangents of the friction angle. */
 typedef void mobilised_surface(size_t count, const real *tangent,
                                const struct invariants *invariants, real *slope);
 
-/* The update of a model with that surface; `with_determinant`: it reads the determinant. */
+/* The update of a model with that surface, which reads invariants of that kind, and with a
+ * potential of its own or NULL. */
 TALUS_INLINE bool mobilised_update(const struct mobilised *mobilised,
                                    const struct material_batch *batch, size_t components,
-                                   mobilised_surface *surface, bool with_determinant)
+                                   mobilised_surface *surface, enum invariants_kind kind,
+                                   mobilised_potential *potential)
 {
     const struct stiffness stiffness = elasticity_stiffness(&mobilised->elasticity);
     const size_t slots = slot_count(batch);
@@ -120,8 +136,7 @@ TALUS_INLINE bool mobilised_update(const struct mobilised *mobilised,
     for (size_t begin = 0; begin < slots; begin += MATERIAL_CHUNK) {
         const size_t count = chunk_count(slots, begin);
         mobilised_friction_at_start(mobilised, batch, begin, count, &angles);
-        invariants_of_trial(stiffness, batch, components, begin, count, with_determinant,
-                            &invariants);
+        invariants_of_trial(stiffness, batch, components, begin, count, kind, &invariants);
         surface(count, angles.tangent, &invariants, slope);
         mobilised_mark_yielding(mobilised, batch, begin, count, slope, &invariants);
         if (!any_flowed(batch, begin, count)) {
@@ -130,8 +145,8 @@ TALUS_INLINE bool mobilised_update(const struct mobilised *mobilised,
         }
         flowed = true;
         mobilised_dilation_at_start(mobilised, batch, begin, count, &angles);
-        mobilised_return(mobilised, batch, begin, count, slope, &angles, &invariants);
-        invariants_apply(stiffness, batch, components, begin, count, &invariants);
+        mobilised_return(mobilised, batch, begin, count, slope, &angles, potential, &invariants);
+        invariants_apply(stiffness, batch, components, begin, count, kind, &invariants);
     }
     return flowed;
 }

@@ -74,6 +74,15 @@ TALUS_INLINE struct sym3 sym3_deviator(struct sym3 a)
     return sym3_add_diagonal(a, -sym3_trace(a) * (1.0 / 3.0));
 }
 
+/* a a */
+TALUS_INLINE struct sym3 sym3_square(struct sym3 a)
+{
+    return (struct sym3){
+        a.xx * a.xx + a.xy * a.xy + a.xz * a.xz, a.yy * a.yy + a.xy * a.xy + a.yz * a.yz,
+        a.zz * a.zz + a.xz * a.xz + a.yz * a.yz, a.xy * (a.xx + a.yy) + a.xz * a.yz,
+        a.yz * (a.yy + a.zz) + a.xy * a.xz,      a.xz * (a.xx + a.zz) + a.xy * a.yz};
+}
+
 TALUS_INLINE real sym3_determinant(struct sym3 a)
 {
     return a.xx * (a.yy * a.zz - a.yz * a.yz) - a.xy * (a.xy * a.zz - a.yz * a.xz) +

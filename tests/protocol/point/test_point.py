@@ -135,8 +135,16 @@ class Mistakes(unittest.TestCase):
                     ("/material/dilation_angle", "range"))
         nakai = {"model": "matsuoka_nakai", "density": 2000, "young_modulus": 1e6,
                  "poisson_ratio": 0.3, "friction": {"a0": 30, "a5": 1}}
-        self.refuse(changed(material=dict(nakai, potential="matsuoka_nakai")),
-                    ("/material/potential", "unsupported"))
+        self.refuse(changed(material=dict(nakai, potential="mohr_coulomb")),
+                    ("/material/potential", "unknown_value"))
+        cone = {"model": "drucker_prager", "density": 2000, "young_modulus": 1e6,
+                "poisson_ratio": 0.3, "friction_angle": 20}
+        self.refuse(changed(material=dict(cone, cone_slope=0.2)),
+                    ("/material/cone_slope", "contradiction"))
+        self.refuse(changed(material=dict(cone, dilation_angle=25)),
+                    ("/material/dilation_angle", "range"))
+        self.refuse(changed(material=dict(cone, isotropic_hardening=-1)),
+                    ("/material/isotropic_hardening", "range"))
         self.refuse(changed(material=dict(nakai, dilation_angle=3)),
                     ("/material/dilation_angle", "contradiction"))
         self.refuse(changed(material=dict(nakai, friction={"a1": 3})),

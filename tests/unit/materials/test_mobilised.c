@@ -288,32 +288,6 @@ static void test_dilation_is_limited_by_friction(void **context)
     }
 }
 
-/* Two principal stresses in tension make F negative as well; such a trial must come back. */
-static void test_matsuoka_nakai_sector(void **context)
-{
-    (void)context;
-    struct fixture fixture;
-    struct slots slots;
-    const double trial[SYM3_COMPONENTS] = {1e3, 1.2e3, -9e3, 0, 0, 0};
-    const double principal[3] = {1e3, 1.2e3, -9e3};
-    double strain[SYM3_COMPONENTS];
-    init_constant(&fixture, "matsuoka_nakai", 30.0, 0.0, 0.0);
-    slots_init(&slots, 8, 6);
-    assert_true(matsuoka_nakai(principal, 30.0) < 0.0); /* the trap */
-    fixture.material->strain_from_stress(fixture.constants, trial, strain);
-    for (int component = 0; component < SYM3_COMPONENTS; component++)
-        slots.batch.strain[component][0] = strain[component];
-    fixture.material->update_stress(fixture.constants, &slots.batch);
-    const double s[3] = {slots.batch.stress[0][0], slots.batch.stress[1][0],
-                         slots.batch.stress[2][0]};
-    assert_true(slots.batch.plastic_strain[0] > 0.0);
-    assert_true(s[0] < 0.0 && s[1] < 0.0 && s[2] < 0.0);
-    assert_near(matsuoka_nakai(s, 30.0), 0.0, 1e-13);
-    assert_near(s[0] + s[1] + s[2], -6.8e3, 1e-9); /* no dilation keeps the mean */
-    slots_release(&slots);
-    fixture_release(&fixture);
-}
-
 /* Matsuoka-Nakai meets Mohr-Coulomb in triaxial compression and extension. */
 static void test_matsuoka_nakai_corners(void **context)
 {
@@ -347,7 +321,6 @@ int main(void)
         cmocka_unit_test(test_angles_are_limited),
         cmocka_unit_test(test_strain_measure),
         cmocka_unit_test(test_returns),
-        cmocka_unit_test(test_matsuoka_nakai_sector),
         cmocka_unit_test(test_matsuoka_nakai_corners),
         cmocka_unit_test(test_dilation_is_limited_by_friction),
     };
