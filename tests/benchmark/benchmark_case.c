@@ -51,6 +51,11 @@ const char *benchmark_ordering_word(const struct benchmark_setup *setup)
     return setup->last ? "last" : "modified_last";
 }
 
+const char *benchmark_shape_word(const struct benchmark_setup *setup)
+{
+    return setup->shape == NULL ? "linear" : setup->shape;
+}
+
 const char *benchmark_control_word(const struct benchmark_setup *setup)
 {
     return setup->cell ? "cell" : "none";

@@ -35,6 +35,7 @@ struct benchmark_setup {
     size_t particles; /* about so many: whole cells, whole blocks along x */
     size_t per_axis;  /* particles per cell and axis */
     int threads;
+    const char *shape;    /* shape functions; NULL: linear */
     bool last;            /* stress_update "last", otherwise "modified_last" */
     bool cell;            /* cell volumetric anti-locking */
     double domain_factor; /* cells of the grid over cells of the body, at least */
@@ -44,6 +45,7 @@ struct benchmark_setup {
 
 /* Words of a setup for tables and files. */
 const char *benchmark_body_word(const struct benchmark_setup *setup);
+const char *benchmark_shape_word(const struct benchmark_setup *setup);
 const char *benchmark_ordering_word(const struct benchmark_setup *setup);
 const char *benchmark_control_word(const struct benchmark_setup *setup);
 

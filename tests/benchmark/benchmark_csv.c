@@ -37,7 +37,8 @@ static void write_header(const struct benchmark_suite *suite, FILE *file)
 static void write_columns(FILE *file)
 {
     (void)fputs(
-        "set,case,body,ordering,anti_locking,threads,particles,per_axis,domain_factor,courant,"
+        "set,case,body,shape,ordering,anti_locking,threads,particles,per_axis,domain_factor,"
+        "courant,"
         "steps,repeats,rate,rate_best,rate_low,rate_high,rate_wall,rate_wall_best,relative,"
         "nanoseconds,time_step,simulated,bytes_stored,bytes_grid,bytes_all,lane_fill,crossings,"
         "strain,"
@@ -53,10 +54,11 @@ static void write_row(const struct benchmark_row *row, FILE *file)
 {
     const struct benchmark_setup *setup = &row->setup;
     const struct benchmark_result *result = &row->result;
-    (void)fprintf(file, "%s,%s,%s,%s,%s,%d,%zu,%zu,%g,%g,%zu,%zu", benchmark_set_word(row->set),
-                  setup->subject->name, benchmark_body_word(setup), benchmark_ordering_word(setup),
-                  benchmark_control_word(setup), setup->threads, result->particles, setup->per_axis,
-                  setup->domain_factor, setup->courant, row->effort.steps, row->effort.repeats);
+    (void)fprintf(file, "%s,%s,%s,%s,%s,%s,%d,%zu,%zu,%g,%g,%zu,%zu", benchmark_set_word(row->set),
+                  setup->subject->name, benchmark_body_word(setup), benchmark_shape_word(setup),
+                  benchmark_ordering_word(setup), benchmark_control_word(setup), setup->threads,
+                  result->particles, setup->per_axis, setup->domain_factor, setup->courant,
+                  row->effort.steps, row->effort.repeats);
     (void)fprintf(file, ",%.4g,%.4g,%.4g,%.4g,%.4g,%.4g,%.4g,%.5g", 1e3 / result->nanoseconds,
                   1e3 / result->fastest, 1e3 / result->quartile_high, 1e3 / result->quartile_low,
                   1e3 / result->wall_nanoseconds, 1e3 / result->wall_fastest, result->relative,

@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 #include "benchmark_options.h"
 
+#include "shapes/shape.h"
+
 #include <errno.h>
 #include <getopt.h>
 #include <math.h>
@@ -14,7 +16,7 @@ static void print_usage(void)
         "usage: talus-benchmark --short|--full|--smoke [--csv FILE | --results FOLDER]\n"
         "                       [--precision double|single] [--isa I]\n"
         "       talus-benchmark --case NAME [--body compact|flow] [--particles N] [--per-axis N]\n"
-        "                       [--threads T] [--ordering last|modified_last]\n"
+        "                       [--threads T] [--shape NAME] [--ordering last|modified_last]\n"
         "                       [--anti-locking none|cell] [--domain FACTOR] [--courant C]\n"
         "                       [--steps N] [--repeats N] [--precision double|single]\n"
         "                       [--isa x86-64-v4|x86-64-v3|x86-64-v2]\n"
@@ -75,6 +77,9 @@ static bool read_option(struct benchmark_options *options, int letter, const cha
         good = read_count(text, 1024, &count);
         setup->threads = (int)count;
         return good;
+    case 'h':
+        setup->shape = text;
+        return shape_find(text) != NULL;
     case 'o':
         return read_word(text, orderings, &setup->last);
     case 'a':
@@ -113,25 +118,17 @@ static bool read_option(struct benchmark_options *options, int letter, const cha
 
 bool benchmark_options_read(int argument_count, char **arguments, struct benchmark_options *options)
 {
-    static const struct option known[] = {{"case", required_argument, NULL, 'c'},
-                                          {"body", required_argument, NULL, 'b'},
-                                          {"particles", required_argument, NULL, 'n'},
-                                          {"per-axis", required_argument, NULL, 'p'},
-                                          {"threads", required_argument, NULL, 't'},
-                                          {"ordering", required_argument, NULL, 'o'},
-                                          {"anti-locking", required_argument, NULL, 'a'},
-                                          {"domain", required_argument, NULL, 'd'},
-                                          {"courant", required_argument, NULL, 'k'},
-                                          {"steps", required_argument, NULL, 's'},
-                                          {"repeats", required_argument, NULL, 'r'},
-                                          {"short", no_argument, NULL, 'S'},
-                                          {"full", no_argument, NULL, 'F'},
-                                          {"smoke", no_argument, NULL, 'M'},
-                                          {"csv", required_argument, NULL, 'v'},
-                                          {"results", required_argument, NULL, 'f'},
-                                          {"isa", required_argument, NULL, 'i'},
-                                          {"precision", required_argument, NULL, 'q'},
-                                          {NULL, 0, NULL, 0}};
+    static const struct option known[] = {
+        {"case", required_argument, NULL, 'c'},      {"body", required_argument, NULL, 'b'},
+        {"particles", required_argument, NULL, 'n'}, {"per-axis", required_argument, NULL, 'p'},
+        {"threads", required_argument, NULL, 't'},   {"shape", required_argument, NULL, 'h'},
+        {"ordering", required_argument, NULL, 'o'},  {"anti-locking", required_argument, NULL, 'a'},
+        {"domain", required_argument, NULL, 'd'},    {"courant", required_argument, NULL, 'k'},
+        {"steps", required_argument, NULL, 's'},     {"repeats", required_argument, NULL, 'r'},
+        {"short", no_argument, NULL, 'S'},           {"full", no_argument, NULL, 'F'},
+        {"smoke", no_argument, NULL, 'M'},           {"csv", required_argument, NULL, 'v'},
+        {"results", required_argument, NULL, 'f'},   {"isa", required_argument, NULL, 'i'},
+        {"precision", required_argument, NULL, 'q'}, {NULL, 0, NULL, 0}};
     int letter = 0;
     *options = (struct benchmark_options){
         .folder = ".",
