@@ -48,6 +48,7 @@ enum talus_stress_update {
     TALUS_STRESS_FIRST,
     TALUS_STRESS_UPDATE_COUNT
 };
+enum talus_gimp_scaling { TALUS_GIMP_VOLUME, TALUS_GIMP_STRETCH };
 enum talus_strain { TALUS_STRAIN_FINITE, TALUS_STRAIN_SMALL };
 enum talus_precision { TALUS_PRECISION_DOUBLE, TALUS_PRECISION_SINGLE };
 enum talus_anti_locking_control { TALUS_CONTROL_NONE, TALUS_CONTROL_CELL };
@@ -62,8 +63,9 @@ struct talus_solver_options {
     double time_step; /* [s]; 0: automatic */
     double courant;   /* [-] share of the critical step, for automatic steps */
     bool allow_unstable;
-    size_t shape_index; /* into the table of shapes (solver/shapes) */
-    double pic_rate;    /* lambda [1/s]; 0: pure FLIP */
+    size_t shape_index;                   /* into the table of shapes (solver/shapes) */
+    enum talus_gimp_scaling gimp_scaling; /* what the size of particles of gimp_scaled follows */
+    double pic_rate;                      /* lambda [1/s]; 0: pure FLIP */
     enum talus_stress_update stress_update;
     enum talus_strain strain;
     enum talus_anti_locking_control anti_locking;

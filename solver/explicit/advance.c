@@ -246,6 +246,10 @@ static void carry(struct run *run, struct block_scratch *scratch, uint32_t block
     struct particle_block *block = &run->grid.blocks[block_index];
     const size_t count = (size_t)block->row_count * LANE_COUNT;
     const struct reach reach = move(run, block, scratch, count);
+    if (run->shape->domain != NULL) {
+        const struct shape_context context = run_shape_context(run, run->time_step);
+        run->shape->domain->resize[run->scene.solver.gimp_scaling](&context, block, &sums->domains);
+    }
     run_note_speed(run, scratch->materials, reach.speed_squared, sums);
     if (run->measures) {
         stage_clock_lap(scratch->clock, STAGE_MOVE);

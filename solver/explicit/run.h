@@ -78,6 +78,7 @@ struct tile_sums {
     double least_jacobian;                 /* smallest det of an incremental deformation gradient */
     uint32_t bad_particle;                 /* id of one where that is not positive, or NONE */
     double plastic_energy, viscous_energy; /* dissipated in the step [J] */
+    struct domain_findings domains;
     uint64_t fall_backs;               /* of anti-locking: control volumes without a linear fit */
     double kinetic, strain, potential; /* where run->measures, and by run_measure_energy [J] */
     double hoop_force;                 /* of the hoop stress on the nodes, along x [N] */
@@ -185,6 +186,8 @@ struct run {
     uint64_t fall_backs;       /* of anti-locking since the start, over all steps */
     uint64_t fall_backs_worst; /* in one step */
     bool fall_back_warned;
+    struct domain_findings domains; /* after the last step */
+    bool capped_warned, stretched_warned;
 
     bool sample_expected; /* at the end of the next step */
     bool measures;        /* the second pass adds up the energies */

@@ -51,6 +51,16 @@ static void partition_outbox(struct run *run)
     }
 }
 
+static void add_findings(struct domain_findings *total, const struct domain_findings *part)
+{
+    if (total->capped == 0)
+        total->capped_particle = part->capped_particle;
+    if (total->stretched == 0)
+        total->stretched_particle = part->stretched_particle;
+    total->capped += part->capped;
+    total->stretched += part->stretched;
+}
+
 static struct tile_sums sum_tiles(const struct run *run)
 {
     struct tile_sums total = {.least_jacobian = 1.0, .bad_particle = PARTICLE_NONE};
@@ -66,6 +76,7 @@ static struct tile_sums sum_tiles(const struct run *run)
         total.viscous_energy += sums->viscous_energy;
         total.fall_backs += sums->fall_backs;
         total.hoop_force += sums->hoop_force;
+        add_findings(&total.domains, &sums->domains);
     }
     return total;
 }
@@ -146,6 +157,7 @@ enum talus_status run_take_step(struct run *run, struct talus_error *error)
     run->materials_present = sums.materials;
     run->energy.plastic += sums.plastic_energy;
     run->energy.viscous += sums.viscous_energy;
+    run->domains = sums.domains;
     run->fall_backs += sums.fall_backs;
     if (sums.fall_backs > run->fall_backs_worst)
         run->fall_backs_worst = sums.fall_backs;
@@ -184,6 +196,7 @@ enum talus_status run_start(struct run *run, struct talus_error *error)
     const struct tile_sums sums = sum_tiles(run);
     run->largest_speed = sqrt(sums.speed_squared);
     run->signal_speed = sums.signal_speed;
+    run->domains = sums.domains;
     run->materials_present = sums.materials;
     run->audit.hoop_force = sums.hoop_force;
     run_choose_time_step(run);

@@ -5,9 +5,11 @@
 #include "materials/material.h"
 #include "seeding/seeding.h"
 #include "seeding/seeding_shape.h"
+#include "shapes/shape.h"
 #include "talus/simulation.h"
 
 #include <stdio.h>
+#include <string.h>
 
 /* Geometry of the bodies that were read without a mistake. */
 static void check_bodies(struct scene_reader *reader)
@@ -120,6 +122,17 @@ static void check_anti_locking(struct scene_reader *reader)
                       "nothing is fitted with control \"none\": name a control volume");
 }
 
+static void check_gimp_scaling(struct scene_reader *reader)
+{
+    const struct talus_solver_options *solver = &reader->scene->solver;
+    struct scene_path parent = {.key = "solver"};
+    struct scene_path here = {.parent = &parent, .key = "gimp_scaling"};
+    if (solver->gimp_scaling != TALUS_GIMP_VOLUME &&
+        strcmp(shape_table[solver->shape_index]->name, "gimp_scaled") != 0)
+        scene_mistake(reader, &here, "contradiction", NULL, NULL,
+                      "only the particles of shape \"gimp_scaled\" change their size");
+}
+
 /* Two boxes in the same place make twice the material there. */
 static void warn_of_overlap(struct scene_reader *reader)
 {
@@ -207,6 +220,8 @@ void scene_check(struct scene_reader *reader)
         check_courant(reader);
     if (!scene_issues_under(reader->issues, "/solver"))
         check_anti_locking(reader);
+    if (!scene_issues_under(reader->issues, "/solver"))
+        check_gimp_scaling(reader);
     if (reader->issues->count > 0)
         return;
     check_estimate(reader);

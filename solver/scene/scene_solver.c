@@ -12,8 +12,8 @@ static const char *const shape_words[] = {
 #undef SHAPE
     NULL,
 };
-static const char *const shape_lacking[] = {"gimp",        "gimp_scaled", "cpdi",
-                                            "cpdi_hybrid", "quadratic",   NULL};
+static const char *const shape_lacking[] = {"cpdi", "cpdi_hybrid", "quadratic", NULL};
+static const char *const gimp_scaling_words[] = {"volume", "stretch", NULL};
 static const char *const transfer_words[] = {"flip", NULL};
 static const char *const transfer_lacking[] = {"pic", "apic", NULL};
 static const char *const stress_words[] = {"modified_last", "last", "first", NULL};
@@ -123,6 +123,13 @@ const struct scene_field scene_solver_fields[] = {
      .storage = SCENE_STORE_SIZE,
      .offset = AT(shape_index),
      .meaning = "shape functions"},
+    {.key = "gimp_scaling",
+     .kind = SCENE_CHOICE,
+     .unit = "1",
+     .choices = gimp_scaling_words,
+     .offset = AT(gimp_scaling),
+     .meaning = "what the size of particles follows with gimp_scaled: their volume (Andersen and "
+                "Andersen 2012, eq. 28), or their stretch along every axis"},
     {.key = "transfer",
      .kind = SCENE_CHOICE,
      .unit = "1",

@@ -5,6 +5,7 @@
 #include "seeding/seeding_stress.h"
 #include "seeding/seeding_velocity.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -21,6 +22,7 @@ void seeding_release(struct particle_seed *seed)
     free(seed->mass);
     free(seed->body);
     free(seed->volume_factor);
+    free(seed->spacing);
     memset(seed, 0, sizeof *seed);
 }
 
@@ -72,8 +74,9 @@ static bool allocate(struct particle_seed *seed, const struct talus_scene *scene
     seed->mass = calloc(slots, sizeof(double));
     seed->body = calloc(slots, sizeof(uint16_t));
     seed->volume_factor = calloc(scene->body_count + 1, sizeof(double));
+    seed->spacing = calloc(scene->body_count + 1, sizeof *seed->spacing);
     return complete && seed->volume != NULL && seed->mass != NULL && seed->body != NULL &&
-           seed->volume_factor != NULL;
+           seed->volume_factor != NULL && seed->spacing != NULL;
 }
 
 /* What all particles of a body have in common. */
@@ -130,8 +133,12 @@ static enum talus_status seed_body(const struct talus_scene *scene, size_t body_
         return status;
     seed->volume_factor[body_index] = factor;
     values.volume = factor;
-    for (size_t k = 0; k < scene->axis_count; k++)
+    for (size_t k = 0; k < scene->axis_count; k++) {
         values.volume *= values.lattice.spacing[k];
+        if (body->shape != TALUS_BODY_POINTS)
+            seed->spacing[body_index][k] =
+                values.lattice.spacing[k] * pow(factor, 1.0 / (double)scene->axis_count);
+    }
     const struct talus_material *material = &scene->materials[body->material_index];
     values.density = material->values[MATERIAL_VALUE_DENSITY];
     struct seeding_row row;

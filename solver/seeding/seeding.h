@@ -16,6 +16,8 @@ struct particle_seed {
     double *mass;          /* [count] kg = density x volume */
     double *stress[6];     /* [count] initial Cauchy stress [Pa]; NULL if no body has any */
     uint16_t *body;        /* [count] index of the body */
+    double (*spacing)[3];  /* [body_count] of the particles along the axes of the body's lattice,
+                              with  which they fill their volume [m]; 0: a list of points */
     double *volume_factor; /* [body_count] common factor that makes the volume of a body exact */
 };
 

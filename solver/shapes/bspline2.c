@@ -19,6 +19,7 @@ TALUS_INLINE void bspline2_weights(lanes x, lanes half, lane_mask odd, lanes w[W
     dw[3] = p;
 }
 
+#define WIDE_KERNELS bspline2_kernels
 #define WIDE_WEIGHTS bspline2_weights
 #define WIDE_USES_DOMAIN 0
 #define DIMENSION 1
@@ -36,9 +37,10 @@ const struct shape shape_bspline2 = {
     .reference = "Steffen, Kirby and Berzins 2008; Mast 2013, sec. 8.3.2",
     .summary =
         "quadratic B-splines: smooth forces where particles cross cells, three nodes an axis",
-    /* Of a bar with two particles a cell (2.1 and 0.69), lowered as linear functions are from that
-     * bar to the least favourable body. */
-    .courant_limit = {1.53, 0.57, 1.53},
+    /* Those of linear functions, times the ratio of the spectral radii of free bodies of one to
+     * three cells and one to four particles an axis, solid and fluid, at several places of the
+     * grid. */
+    .courant_limit = {1.45, 0.63, 1.45},
     .reach = 1,
-    .kernels = {&wide_kernels_1, &wide_kernels_2, &wide_kernels_3},
+    .kernels = {&bspline2_kernels_1, &bspline2_kernels_2, &bspline2_kernels_3},
 };

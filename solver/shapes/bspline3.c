@@ -18,6 +18,7 @@ TALUS_INLINE void bspline3_weights(lanes x, lanes half, lane_mask odd, lanes w[W
     dw[3] = 0.5 * tt;
 }
 
+#define WIDE_KERNELS bspline3_kernels
 #define WIDE_WEIGHTS bspline3_weights
 #define WIDE_USES_DOMAIN 0
 #define DIMENSION 1
@@ -34,9 +35,10 @@ const struct shape shape_bspline3 = {
     .name = "bspline3",
     .reference = "Steffen, Kirby and Berzins 2008; Mast 2013, sec. 8.3.2",
     .summary = "cubic B-splines: the smoothest, four nodes an axis",
-    /* Of a bar with two particles a cell (2.5 and 0.95), lowered as linear functions are from that
-     * bar to the least favourable body. */
-    .courant_limit = {1.82, 0.79, 1.82},
+    /* Those of linear functions, times the ratio of the spectral radii of free bodies of one to
+     * three cells and one to four particles an axis, solid and fluid, at several places of the
+     * grid. */
+    .courant_limit = {1.67, 0.77, 1.67},
     .reach = 1,
-    .kernels = {&wide_kernels_1, &wide_kernels_2, &wide_kernels_3},
+    .kernels = {&bspline3_kernels_1, &bspline3_kernels_2, &bspline3_kernels_3},
 };

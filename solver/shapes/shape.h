@@ -82,6 +82,26 @@ struct shape_kernels {
                           size_t count, real *const *values, uint32_t first);
 };
 
+/* Particles whose extent a shape cannot follow. */
+struct domain_findings {
+    uint64_t capped;    /* longer than the shape can be, and taken as if they were just as long */
+    uint64_t stretched; /* beyond what the rule that scales them is made for */
+    uint32_t capped_particle; /* id of one of them, if there are any */
+    uint32_t stretched_particle;
+};
+
+/* Shapes that know the extent of their particles, PARTICLE_DOMAIN. */
+struct shape_domain {
+    uint32_t (*component_count)(size_t axis_count);
+    bool needs_gradient; /* particles must store PARTICLE_GRADIENT */
+    /* PARTICLE_DOMAIN of a particle of that size along the axes, in cell widths. */
+    void (*initialise)(size_t axis_count, const double size[3], real *domain);
+    /* Once the particles of a block have been strained, before they scatter at their new places;
+     * also at the start. Per rule (index: enum talus_gimp_scaling). Adds to the findings. */
+    void (*resize[2])(const struct shape_context *context, const struct particle_block *block,
+                      struct domain_findings *findings);
+};
+
 struct shape {
     const char *name, *reference, *summary;
     /* Largest stable Courant number c dt / h with full cells, per stress ordering (index: enum
@@ -89,6 +109,7 @@ struct shape {
     double courant_limit[TALUS_STRESS_UPDATE_COUNT];
     /* Cells beyond its own that a particle can reach, at most REACH_MAX (state/sparse_grid.h). */
     uint32_t reach;
+    const struct shape_domain *domain;      /* NULL: particles are points */
     const struct shape_kernels *kernels[3]; /* per dimension: 1, 2, 3 axes */
 };
 

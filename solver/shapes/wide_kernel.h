@@ -1,14 +1,18 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Kernels of tensor-product shapes that reach one cell beyond their own; included once per
- * dimension by the file of a shape, between its macros (no guard): DIMENSION         1, 2 or 3
- *   WIDE_WEIGHTS      (lanes x, lanes half, lane_mask odd, lanes w[4], lanes dw[4]): weights and
- *                     slopes per cell width at the position x in -1/2..1/2 of the cell of a
- * particle with half its length `half`, in cell widths; `odd`: upper cell of an element
- *   WIDE_USES_DOMAIN  1: `half` is PARTICLE_DOMAIN
- * Defines wide_kernels_1 to 3. Stencils are worked out once per row of particles and pass, for a
- * chunk of rows at a time; what is scattered is summed by offset and reaches the nodes once a
- * block.
- */
+ * dimension by the file of a shape (no guard). Stencils are worked out once per row of particles
+ * and pass, for a chunk of rows at a time; what is scattered is summed by offset and reaches the
+ * nodes once a block. The file defines before:
+ *
+ * DIMENSION: 1, 2 or 3.
+ *
+ * WIDE_KERNELS: name of what is defined here, to which the dimension is added.
+ *
+ * WIDE_WEIGHTS(lanes x, lanes half, lane_mask odd, lanes w[4], lanes dw[4]): weights and slopes per
+ * cell width at the position x in -1/2..1/2 of the cell, of a particle with half its length `half`,
+ * in cell widths; `odd`: upper cell of an element.
+ *
+ * WIDE_USES_DOMAIN: 1 if `half` is PARTICLE_DOMAIN, 0 if it is not used. */
 #define WIDE_CONCAT_(a, b) a##_##b
 #define WIDE_CONCAT(a, b) WIDE_CONCAT_(a, b)
 #define LOCAL(name) WIDE_CONCAT(name, DIMENSION)
@@ -167,7 +171,8 @@ static void LOCAL(gather_values)(const struct shape_context *context,
     }
 }
 
-static const struct shape_kernels LOCAL(wide_kernels) = {
+extern const struct shape_kernels WIDE_CONCAT(WIDE_KERNELS, DIMENSION);
+const struct shape_kernels WIDE_CONCAT(WIDE_KERNELS, DIMENSION) = {
     .kick = LOCAL(kick),
     .gather = LOCAL(gather),
     .scatter = LOCAL(scatter),

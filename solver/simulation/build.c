@@ -65,6 +65,10 @@ void run_layout(const struct talus_scene *scene, struct particle_layout *layout)
     if (scene_wants(scene, TALUS_FIELD_DEFORMATION_GRADIENT) || (strain && finite))
         count[PARTICLE_GRADIENT] = axes * axes + strains_across(scene);
     count[PARTICLE_TOTAL_STRAIN] = strain && !finite ? tensor : 0;
+    const struct shape_domain *domain = shape_table[scene->solver.shape_index]->domain;
+    count[PARTICLE_DOMAIN] = domain != NULL ? domain->component_count(axes) : 0;
+    if (domain != NULL && domain->needs_gradient)
+        count[PARTICLE_GRADIENT] = axes * axes;
     layout->has_body = scene->body_count > 1;
     particle_layout_finish(layout);
 }

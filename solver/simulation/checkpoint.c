@@ -22,6 +22,8 @@ struct checkpoint_header {
     double time, time_step, critical_time_step, last_time_step, interval, duration;
     double largest_speed, signal_speed, checked_speed, mass_cutoff;
     uint64_t materials_present, fall_backs, fall_backs_worst, fall_back_warned;
+    struct domain_findings domains;
+    uint32_t capped_warned, stretched_warned;
     struct run_energy energy;
     struct run_audit audit;
 };
@@ -65,6 +67,9 @@ static struct checkpoint_header make_header(const struct talus_simulation *simul
     header.fall_backs = run->fall_backs;
     header.fall_backs_worst = run->fall_backs_worst;
     header.fall_back_warned = run->fall_back_warned;
+    header.domains = run->domains;
+    header.capped_warned = run->capped_warned;
+    header.stretched_warned = run->stretched_warned;
     header.checked_speed = run->checked_speed;
     header.mass_cutoff = run->mass_cutoff;
     header.energy = run->energy;
@@ -300,6 +305,9 @@ static void restore_header(struct run *run, const struct checkpoint_header *head
     run->fall_backs = header->fall_backs;
     run->fall_backs_worst = header->fall_backs_worst;
     run->fall_back_warned = header->fall_back_warned != 0;
+    run->domains = header->domains;
+    run->capped_warned = header->capped_warned != 0;
+    run->stretched_warned = header->stretched_warned != 0;
     run->time = header->time;
     run->time_step = header->time_step;
     run->critical_time_step = header->critical_time_step;

@@ -63,6 +63,10 @@ static void add_audit(struct talus_simulation *simulation)
     add_metric(simulation, "", "energy_error", turnover > 0 ? fmax(0, -loss) / turnover : 0.0);
     add_metric(simulation, "", "energy_numerical", turnover > 0 ? loss / turnover : 0.0);
     add_metric(simulation, "", "eliminated_mass", audit->eliminated_mass);
+    if (run->shape->domain != NULL) {
+        add_metric(simulation, "domains.", "capped", (double)run->domains.capped);
+        add_metric(simulation, "domains.", "stretched", (double)run->domains.stretched);
+    }
     if (run->scene.solver.anti_locking == TALUS_CONTROL_NONE ||
         run->scene.solver.anti_locking_field == TALUS_FIT_VOLUMETRIC)
         return;

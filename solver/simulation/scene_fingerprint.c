@@ -58,6 +58,7 @@ static void add_solver(uint64_t *hash, const struct talus_scene *scene)
         add_number(hash, (uint64_t)scene->grid.cell_count[axis]);
     add_number(hash, (uint64_t)scene->grid.outside);
     add_number(hash, solver->shape_index);
+    add_number(hash, (uint64_t)solver->gimp_scaling);
     add_number(hash, (uint64_t)solver->stress_update);
     add_number(hash, (uint64_t)solver->strain);
     add_number(hash, (uint64_t)solver->anti_locking);

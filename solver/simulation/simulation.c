@@ -85,6 +85,24 @@ static void set_velocity(const struct run *run, const struct particle_seed *seed
             (real)velocity[axis];
 }
 
+/* The extent of a particle: that of its lattice, or a cube where that is turned or a list. */
+static void set_domain(const struct run *run, const struct particle_seed *seed, size_t particle,
+                       struct particle_record *record)
+{
+    const size_t axes = run->grid.domain.axis_count;
+    const double *spacing = seed->spacing[seed->body[particle]];
+    const bool aligned =
+        spacing[0] > 0 && run->scene.bodies[seed->body[particle]].rotate_angle_deg == 0.0;
+    double size[3] = {0};
+    for (size_t axis = 0; axis < axes; axis++) {
+        const double edge =
+            aligned ? spacing[axis] : pow(seed->volume[particle], 1.0 / (double)axes);
+        size[axis] = edge * run->grid.domain.inverse_cell[axis];
+    }
+    run->shape->domain->initialise(
+        axes, size, record->values + run->grid.layout.first_component[PARTICLE_DOMAIN]);
+}
+
 static enum talus_status place_particle(struct run *run, const struct particle_seed *seed,
                                         size_t particle, struct talus_error *error)
 {
@@ -106,6 +124,8 @@ static enum talus_status place_particle(struct run *run, const struct particle_s
     set_velocity(run, seed, particle, record);
     record->values[layout->first_component[PARTICLE_MASS]] = (real)seed->mass[particle];
     record->values[layout->first_component[PARTICLE_VOLUME]] = (real)seed->volume[particle];
+    if (run->shape->domain != NULL)
+        set_domain(run, seed, particle, record);
     set_initial_strain(run, seed, particle, record);
     size_t slot = 0;
     if (sparse_grid_insert(&run->grid, cell, record, &slot) == BLOCK_NONE)
@@ -163,6 +183,31 @@ enum talus_status simulation_check_precision(const struct talus_scene *scene,
                                                                                   : "double");
 }
 
+/* Once each, when it happens first. */
+static void warn_of_domains(struct talus_simulation *simulation)
+{
+    struct run *run = &simulation->run;
+    const struct domain_findings *found = &run->domains;
+    if (found->capped > 0 && !run->capped_warned) {
+        run->capped_warned = true;
+        simulation_warn(simulation, "domain_capped", "/solver/shape",
+                        "at t = %.6g s %llu particles, number %u among them, are longer than the "
+                        "shape functions can be, and are taken as if they were just as long (the "
+                        "metric domains.capped counts them at the end): use more particles a cell",
+                        run->time, (unsigned long long)found->capped, found->capped_particle);
+    }
+    if (found->stretched > 0 && !run->stretched_warned) {
+        run->stretched_warned = true;
+        simulation_warn(
+            simulation, "domain_stretched", "/solver/gimp_scaling",
+            "at t = %.6g s %llu particles, number %u among them, are stretched to less "
+            "than 0.7 or more than 1.4 times their length in some direction: sizes that "
+            "follow the volume leave gaps there (the metric domains.stretched counts "
+            "them at the end); \"stretch\" follows it",
+            run->time, (unsigned long long)found->stretched, found->stretched_particle);
+    }
+}
+
 enum talus_status talus_simulation_create(const struct talus_scene *scene,
                                           const struct talus_simulation_options *options,
                                           struct talus_simulation **simulation,
@@ -191,6 +236,7 @@ enum talus_status talus_simulation_create(const struct talus_scene *scene,
         return status;
     }
     probes_locate(created);
+    warn_of_domains(created);
     *simulation = created;
     return TALUS_OK;
 }
@@ -271,6 +317,7 @@ enum talus_status talus_simulation_step(struct talus_simulation *simulation,
                         "metric anti_locking.fallbacks counts them over all steps)",
                         run->time, (unsigned long long)run->fall_backs);
     }
+    warn_of_domains(simulation);
     return TALUS_OK;
 }
 

@@ -45,6 +45,8 @@ static void bench_init(struct bench *bench, const struct shape *shape, size_t ax
     grid->layout.component_count[PARTICLE_POSITION] = (uint32_t)axes;
     grid->layout.component_count[PARTICLE_VELOCITY] = (uint32_t)axes;
     grid->layout.component_count[PARTICLE_MASS] = 1;
+    if (shape->domain != NULL)
+        grid->layout.component_count[PARTICLE_DOMAIN] = shape->domain->component_count(axes);
     particle_layout_finish(&grid->layout);
     node_layout_init(&grid->nodes.layout, axes, true);
     for (int32_t particle = 0; particle < ROWS * LANE_COUNT; particle++) {
@@ -58,7 +60,12 @@ static void bench_init(struct bench *bench, const struct shape *shape, size_t ax
                 edge ? edges[((size_t)particle / 2 + axis) % 3] : 0.5 * random_value(&random);
             record.values[axes + axis] = random_value(&random);
         }
-        record.values[2 * axes] = 1.5 + random_value(&random);
+        const double size[3] = {1.01 + random_value(&random), 1.01 + random_value(&random),
+                                1.01 + random_value(&random)};
+        if (shape->domain != NULL)
+            shape->domain->initialise(
+                axes, size, record.values + grid->layout.first_component[PARTICLE_DOMAIN]);
+        record.values[grid->layout.first_component[PARTICLE_MASS]] = 1.5 + random_value(&random);
         size_t slot = 0;
         bench->block = sparse_grid_insert(grid, cell, &record, &slot);
         assert_int_not_equal(bench->block, BLOCK_NONE);
