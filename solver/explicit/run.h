@@ -237,6 +237,10 @@ void run_add_slopes(struct run *run);
  * and the ramp. After the walls. */
 void run_book_gravity(struct run *run, double factor);
 
+/* ---- tractions.c ---- */
+/* The forces of loaded faces, if the scene has any. Before there are nodes. */
+void run_add_tractions(struct run *run);
+
 /* ---- particle_forces.c ---- */
 /* Takes over what the embedding program adds. Before there are nodes. */
 void run_set_callbacks(struct run *run, const struct talus_simulation_options *options);

@@ -90,6 +90,20 @@ static void add_materials(uint64_t *hash, const struct talus_scene *scene)
     }
 }
 
+static void add_tractions(uint64_t *hash, const struct talus_body *body)
+{
+    add_number(hash, body->traction_count);
+    for (size_t index = 0; index < body->traction_count; index++) {
+        const struct talus_traction *traction = &body->tractions[index];
+        add_number(hash, traction->face);
+        add_number(hash, traction->last_face);
+        add_number(hash, (uint64_t)traction->kind);
+        add_number(hash, traction->is_pressure);
+        add_reals(hash, traction->value, 3);
+        add_tables(hash, traction->table, 3);
+    }
+}
+
 static void add_bodies(uint64_t *hash, const struct talus_scene *scene)
 {
     add_number(hash, scene->body_count);
@@ -126,6 +140,7 @@ static void add_bodies(uint64_t *hash, const struct talus_scene *scene)
         add_reals(hash, body->beam_to, 3);
         add_reals(hash, body->beam_tip, 3);
         add_reals(hash, body->stress, 6);
+        add_tractions(hash, body);
         add_reals(hash, reals, sizeof reals / sizeof reals[0]);
     }
 }

@@ -126,6 +126,9 @@ static enum talus_status place_particle(struct run *run, const struct particle_s
     record->values[layout->first_component[PARTICLE_VOLUME]] = (real)seed->volume[particle];
     if (run->shape->domain != NULL)
         set_domain(run, seed, particle, record);
+    for (size_t component = 0; component < seed->traction_components; component++)
+        record->values[layout->first_component[PARTICLE_TRACTION] + component] =
+            (real)seed->traction[component][particle];
     set_initial_strain(run, seed, particle, record);
     size_t slot = 0;
     if (sparse_grid_insert(&run->grid, cell, record, &slot) == BLOCK_NONE)
