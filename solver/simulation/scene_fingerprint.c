@@ -49,6 +49,8 @@ static void add_solver(uint64_t *hash, const struct talus_scene *scene)
                             solver->viscous_damping,
                             solver->local_damping,
                             solver->force_ramp,
+                            solver->settle_time,
+                            solver->settle_damping,
                             scene->grid.outside_mass_limit};
     add_number(hash, scene->axis_count);
     add_number(hash, (uint64_t)scene->dimension);

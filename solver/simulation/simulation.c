@@ -307,9 +307,12 @@ enum talus_status talus_simulation_step(struct talus_simulation *simulation,
                                "the simulation has become unstable and cannot go on");
     if (run->time_step <= 0)
         return TALUS_OK;
+    const bool settles = run_is_settling(run);
     const enum talus_status status = take_step(simulation, error);
     if (status != TALUS_OK)
         return status;
+    if (settles && !run_is_settling(run))
+        probes_locate(simulation);
     const double fixed = run->scene.solver.time_step;
     if (fixed > run->critical_time_step && !run->over_critical_warned) {
         run->over_critical_warned = true;
@@ -370,7 +373,7 @@ void talus_simulation_get_state(const struct talus_simulation *simulation,
 enum talus_status talus_simulation_set_duration(struct talus_simulation *simulation,
                                                 double duration, struct talus_error *error)
 {
-    if (!(duration >= simulation->run.time) || !isfinite(duration))
+    if (!(duration >= fmax(simulation->run.time, 0)) || !isfinite(duration))
         return talus_error_set(error, TALUS_INVALID, "range", "/duration",
                                "the end %.6g s is before the present time %.6g s", duration,
                                simulation->run.time);
