@@ -74,8 +74,8 @@ struct talus_solver_options {
     double viscous_damping;         /* C [-] of the viscous stress C rho h c tr(d) 1 */
     double local_damping;           /* [-] share of the out-of-balance force */
     double force_ramp;              /* [s]; 0: none */
-    double settle_time;    /* [s] before t = 0, in which walls stand still; 0: none */
-    double settle_damping; /* c [1/s] of that time: velocities fall by exp(-c dt) */
+    double settle_time;             /* [s] before t = 0, in which walls stand still; 0: none */
+    double settle_damping;          /* c [1/s] of that time: velocities fall by exp(-c dt) */
     enum talus_precision precision; /* of particles, nodes and kernels */
 };
 

@@ -264,8 +264,8 @@ static inline bool run_is_settling(const struct run *run)
 }
 /* Before a step that ends at t = 0 at the latest: damps all velocities, and books it. */
 void run_damp_settling(struct run *run);
-/* At t = 0: what is measured from then on starts anew - displacement and plastic strain (the fields;
- * materials keep their state), reactions and peaks, energy and momentum. */
+/* At t = 0: what is measured from then on starts anew - displacement and plastic strain (the
+ * fields; materials keep their state), reactions and peaks, energy and momentum. */
 void run_end_settling(struct run *run);
 
 /* ---- node_update.c ---- */

@@ -43,15 +43,10 @@ static void add_text(uint64_t *hash, const char *text)
 static void add_solver(uint64_t *hash, const struct talus_scene *scene)
 {
     const struct talus_solver_options *solver = &scene->solver;
-    const double reals[] = {solver->time_step,
-                            solver->courant,
-                            solver->pic_rate,
-                            solver->viscous_damping,
-                            solver->local_damping,
-                            solver->force_ramp,
-                            solver->settle_time,
-                            solver->settle_damping,
-                            scene->grid.outside_mass_limit};
+    const double reals[] = {
+        solver->time_step,       solver->courant,        solver->pic_rate,
+        solver->viscous_damping, solver->local_damping,  solver->force_ramp,
+        solver->settle_time,     solver->settle_damping, scene->grid.outside_mass_limit};
     add_number(hash, scene->axis_count);
     add_number(hash, (uint64_t)scene->dimension);
     add_reals(hash, scene->grid.cell, 3);
