@@ -85,7 +85,7 @@ TALUS_INLINE struct vec3 combined(real p, struct vec3 a, real q, struct vec3 b)
 /* In numbers: as a choice of each component gcc leaves the loop scalar. */
 TALUS_INLINE struct vec3 longer(struct vec3 a, struct vec3 b)
 {
-    const real share = vec3_dot(a, a) < vec3_dot(b, b) ? 0 : 1;
+    const real share = vec3_dot(a, a) < vec3_dot(b, b) ? (real)0 : (real)1;
     return combined(share, a, 1 - share, b);
 }
 
