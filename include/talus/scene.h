@@ -74,6 +74,8 @@ struct talus_solver_options {
     double viscous_damping;         /* C [-] of the viscous stress C rho h c tr(d) 1 */
     double local_damping;           /* [-] share of the out-of-balance force */
     double force_ramp;              /* [s]; 0: none */
+    double settle_time;             /* [s] before t = 0, in which walls stand still; 0: none */
+    double settle_damping;          /* c [1/s] of that time: velocities fall by exp(-c dt) */
     enum talus_precision precision; /* of particles, nodes and kernels */
 };
 
@@ -104,6 +106,23 @@ enum talus_velocity_field {
     TALUS_VELOCITY_BEAM_MODE
 };
 enum talus_k0 { TALUS_K0_GIVEN, TALUS_K0_ELASTIC, TALUS_K0_JAKY, TALUS_K0_AUTO };
+
+/* dead: the force keeps its direction and size. fibre: the direction goes along with the fibre of
+ * material that had it, n = F n0 / |F n0|; the size stays. normal: a pressure on the surface as it
+ * is now, n dA = J F^-T n0 dA0. */
+enum talus_traction_kind { TALUS_TRACTION_DEAD, TALUS_TRACTION_FIBRE, TALUS_TRACTION_NORMAL };
+
+/* A load on a part of the surface of a body, per area of that surface at t = 0. */
+struct talus_traction {
+    /* box: 0 ... 5 x_min, x_max, y_min, ...; polygon: the sides from one to another (on past the
+     * last, if that is the smaller one), side k from vertex k to the next; sphere: 0, all of it;
+     * cylinder: 0 outside, 1 the end `from`, 2 `to` */
+    size_t face, last_face;
+    enum talus_traction_kind kind;
+    bool is_pressure;                 /* value[0] is a pressure, positive into the body */
+    double value[3];                  /* [Pa], in the world, also on bodies that are turned */
+    struct talus_time_table table[3]; /* of the same */
+};
 
 struct talus_body {
     char *name;
@@ -139,6 +158,8 @@ struct talus_body {
     double k0;        /* TALUS_K0_GIVEN */
     double surcharge; /* [Pa] */
     double stress[6]; /* TALUS_INITIAL_GIVEN [Pa] */
+    struct talus_traction *tractions;
+    size_t traction_count;
 };
 
 enum talus_boundary_shape { TALUS_BOUNDARY_PLANE, TALUS_BOUNDARY_FACE, TALUS_BOUNDARY_BOX };

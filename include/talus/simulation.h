@@ -32,7 +32,8 @@ struct talus_simulation_options {
     void *context;                             /* the caller's, handed to both */
 };
 
-/* Builds the simulation at t = 0: particles seeded, initial stress set, forces ready.
+/* Builds the simulation at t = 0, or as long before as the scene settles: particles seeded, initial
+ * stress set, forces ready. What is measured starts at t = 0, where settling ends to the last bit.
  * The scene is copied. *simulation is owned by the caller (destroy it). */
 TALUS_MUST_CHECK enum talus_status
 talus_simulation_create(const struct talus_scene *scene,
@@ -46,7 +47,7 @@ TALUS_MUST_CHECK enum talus_status talus_simulation_step(struct talus_simulation
                                                          struct talus_error *error);
 
 struct talus_simulation_state {
-    double time;               /* [s] */
+    double time;               /* [s]; negative while the scene settles */
     double duration;           /* [s] end of the run */
     uint64_t step;             /* steps taken */
     double time_step;          /* [s] of the next step */

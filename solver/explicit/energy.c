@@ -165,3 +165,12 @@ void run_book_eliminated_energy(struct run *run, const struct particle_record *r
         run->energy.potential -= potential;
     }
 }
+
+void run_open_books(struct run *run)
+{
+    run_measure_energy(run);
+    run->audit.initial_stored = run->energy.kinetic + run->energy.strain;
+    run->audit.initial_potential = run->energy.potential;
+    run->audit.initial_energy = run->audit.initial_stored + run->energy.potential;
+    run_measure_momentum(run, run->audit.initial_momentum, &run->audit.initial_mass);
+}

@@ -11,7 +11,8 @@
 double run_force_factor(const struct run *run)
 {
     const double ramp = run->scene.solver.force_ramp;
-    return ramp > 0 ? fmin(1.0, (run->time + run->time_step) / ramp) : 1.0;
+    const double begin = -run->scene.solver.settle_time;
+    return ramp > 0 ? fmin(1.0, (run->time - begin + run->time_step) / ramp) : 1.0;
 }
 
 /* Nodes of a block that are heavy enough to carry motion, and 1 / mass of these. */

@@ -82,6 +82,7 @@ struct tile_sums {
     uint64_t fall_backs;               /* of anti-locking: control volumes without a linear fit */
     double kinetic, strain, potential; /* where run->measures, and by run_measure_energy [J] */
     double hoop_force;                 /* of the hoop stress on the nodes, along x [N] */
+    double settled_momentum[3], settled_energy; /* taken by run_damp_settling [N s], [J] */
 };
 
 /* What a chunk of node blocks adds up in the node update; summed over the chunks in order. */
@@ -237,6 +238,10 @@ void run_add_slopes(struct run *run);
  * and the ramp. After the walls. */
 void run_book_gravity(struct run *run, double factor);
 
+/* ---- tractions.c ---- */
+/* The forces of loaded faces, if the scene has any. Before there are nodes. */
+void run_add_tractions(struct run *run);
+
 /* ---- particle_forces.c ---- */
 /* Takes over what the embedding program adds. Before there are nodes. */
 void run_set_callbacks(struct run *run, const struct talus_simulation_options *options);
@@ -251,6 +256,17 @@ void run_scatter_forces_one(struct run *run, const struct particle_block *block,
                             double time);
 /* Impulse and work of the external forces of the step, after the walls, for the audit. */
 void run_book_forces(struct run *run, double factor);
+
+/* ---- settle.c ---- */
+static inline bool run_is_settling(const struct run *run)
+{
+    return run->time < 0;
+}
+/* Before a step that ends at t = 0 at the latest: damps all velocities, and books it. */
+void run_damp_settling(struct run *run);
+/* At t = 0: what is measured from then on starts anew - displacement and plastic strain (the
+ * fields; materials keep their state), reactions and peaks, energy and momentum. */
+void run_end_settling(struct run *run);
 
 /* ---- node_update.c ---- */
 void run_kick_nodes(struct run *run);
@@ -299,5 +315,7 @@ void run_book_energy(struct run *run);
 double run_numerical_loss(const struct run *run);
 double run_energy_turnover(const struct run *run);
 void run_measure_momentum(const struct run *run, double momentum[3], double *mass);
+/* The audit starts from the present state. */
+void run_open_books(struct run *run);
 
 #endif

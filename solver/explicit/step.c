@@ -136,6 +136,7 @@ static enum talus_status prepare_grid(struct run *run, struct talus_error *error
 enum talus_status run_take_step(struct run *run, struct talus_error *error)
 {
     struct stage_clock *clock = run->scratch[0].clock;
+    const bool settles = run_is_settling(run);
     stage_clock_start(clock);
     enum talus_status status = prepare_grid(run, error);
     if (status != TALUS_OK) {
@@ -143,6 +144,7 @@ enum talus_status run_take_step(struct run *run, struct talus_error *error)
         return status;
     }
     run_set_gravity(run);
+    run_damp_settling(run);
     stage_clock_lap(clock, STAGE_HOUSEKEEPING);
     run->measures = run->sample_expected || health_checks_energy(run->step + 1);
     run->sample_expected = false;
@@ -177,6 +179,8 @@ enum talus_status run_take_step(struct run *run, struct talus_error *error)
         run->failed = true;
         return status;
     }
+    if (settles && !run_is_settling(run))
+        run_end_settling(run);
     run_choose_time_step(run);
     stage_clock_lap(clock, STAGE_TIME_STEP);
     return TALUS_OK;
@@ -186,6 +190,7 @@ enum talus_status run_start(struct run *run, struct talus_error *error)
 {
     run->wall_node_count = 0;
     run->walled_block_count = 0;
+    run->time = -run->scene.solver.settle_time;
     wall_set_prepare(&run->walls, &run->scene, &run->grid.domain, run->time, 0);
     if (sparse_grid_purge(&run->grid) != 0 || run_find_walls(run) != 0 ||
         run_prepare_tiles(run) != 0 || sparse_grid_pack(&run->grid) != 0 ||
@@ -200,10 +205,6 @@ enum talus_status run_start(struct run *run, struct talus_error *error)
     run->materials_present = sums.materials;
     run->audit.hoop_force = sums.hoop_force;
     run_choose_time_step(run);
-    run_measure_energy(run);
-    run->audit.initial_stored = run->energy.kinetic + run->energy.strain;
-    run->audit.initial_potential = run->energy.potential;
-    run->audit.initial_energy = run->audit.initial_stored + run->energy.potential;
-    run_measure_momentum(run, run->audit.initial_momentum, &run->audit.initial_mass);
+    run_open_books(run);
     return TALUS_OK;
 }

@@ -57,7 +57,8 @@ void run_note_speed(const struct run *run, uint64_t materials, double speed_squa
 
 void run_choose_time_step(struct run *run)
 {
-    const double remaining = run->scene.duration - run->time;
+    /* Settling ends at t = 0, to the last bit. */
+    const double remaining = (run_is_settling(run) ? 0.0 : run->scene.duration) - run->time;
     /* Without particles nothing limits the step: as it was. */
     if (run->signal_speed > 0)
         run->critical_time_step =

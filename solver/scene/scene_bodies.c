@@ -122,7 +122,12 @@ const struct scene_field scene_body_fields[] = {
      .read = scene_initial_stress_read,
      .schema = scene_initial_stress_schema,
      .meaning = "stress at the start"},
-    {.key = "traction", .unsupported = true},
+    {.key = "traction",
+     .kind = SCENE_CUSTOM,
+     .unit = "Pa",
+     .read = scene_body_traction_read,
+     .schema = scene_body_traction_schema,
+     .meaning = "loads on faces"},
     {.key = "phase", .unsupported = true},
     {.key = NULL},
 };
@@ -201,12 +206,12 @@ static void read_body(struct scene_reader *reader, const struct scene_path *path
         body->lattice_value[k] = 1.0;
     }
     body->surface = NAN;
-    scene_fields_read(reader, path, scene_body_fields, given, &keys, effective);
     static const char *const shapes[] = {"box", "sphere", "cylinder", "polygon", "points"};
     for (int shape = 0; shape <= (int)TALUS_BODY_POINTS; shape++) {
         if (json_object_get(given, shapes[shape]) != NULL)
             body->shape = (enum talus_body_shape)shape;
     }
+    scene_fields_read(reader, path, scene_body_fields, given, &keys, effective);
     if (json_object_get(given, "spacing") != NULL)
         body->lattice = TALUS_LATTICE_SPACING;
     else if (json_object_get(given, "count") != NULL)

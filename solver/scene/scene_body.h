@@ -20,4 +20,9 @@ void scene_body_rotate_read(struct scene_reader *reader, const struct scene_path
                             const json_t *given, void *target, json_t *effective);
 json_t *scene_body_rotate_schema(void);
 
+/* `traction`: a list of loads on faces. The shape and the clip box are known. */
+void scene_body_traction_read(struct scene_reader *reader, const struct scene_path *path,
+                              const json_t *given, void *target, json_t *effective);
+json_t *scene_body_traction_schema(void);
+
 #endif

@@ -199,6 +199,26 @@ static void warn_of_precision(struct scene_reader *reader, const struct talus_es
                    estimate->force_noise);
 }
 
+/* What settles comes to rest: a velocity at the start would be damped away. */
+static void check_settling(struct scene_reader *reader)
+{
+    const struct talus_scene *scene = reader->scene;
+    struct scene_path bodies = {.key = "bodies"};
+    if (scene->solver.settle_damping > 0.0 && scene->solver.settle_time == 0.0)
+        scene_mistake_at(reader, "/solver/stabilise/settle/time", "required",
+                         "damping acts in the time before t = 0, of which there is none");
+    for (size_t index = 0; index < scene->body_count && scene->solver.settle_time > 0.0; index++) {
+        const struct talus_body *body = &scene->bodies[index];
+        struct scene_path entry = {.parent = &bodies, .index = index};
+        struct scene_path here = {.parent = &entry, .key = "velocity"};
+        if (body->velocity_field != TALUS_VELOCITY_UNIFORM || body->velocity[0] != 0.0 ||
+            body->velocity[1] != 0.0 || body->velocity[2] != 0.0)
+            scene_mistake(reader, &here, "contradiction", NULL, NULL,
+                          "'settle' brings all bodies to rest before t = 0: it cannot be combined "
+                          "with a velocity at the start");
+    }
+}
+
 /* A fixed step above the critical one, and whatever else the solver refuses. */
 static void check_estimate(struct scene_reader *reader)
 {
@@ -218,6 +238,7 @@ void scene_check(struct scene_reader *reader)
     check_bodies(reader);
     if (!scene_issues_under(reader->issues, "/solver"))
         check_courant(reader);
+    check_settling(reader);
     if (!scene_issues_under(reader->issues, "/solver"))
         check_anti_locking(reader);
     if (!scene_issues_under(reader->issues, "/solver"))

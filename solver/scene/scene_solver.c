@@ -51,6 +51,24 @@ static const struct scene_field anti_locking_fields[] = {
     {.key = NULL},
 };
 
+static const struct scene_field settle_fields[] = {
+    {.key = "time",
+     .kind = SCENE_NUMBER,
+     .unit = "s",
+     .minimum = 0.0,
+     .maximum = INFINITY,
+     .offset = AT(settle_time),
+     .meaning = "time before t = 0 that is run without being recorded; walls stand still"},
+    {.key = "damping",
+     .kind = SCENE_NUMBER,
+     .unit = "1/s",
+     .minimum = 0.0,
+     .maximum = INFINITY,
+     .offset = AT(settle_damping),
+     .meaning = "c: in that time velocities fall by exp(-c dt) a step"},
+    {.key = NULL},
+};
+
 static const struct scene_field stabilise_fields[] = {
     {.key = "viscous_damping",
      .kind = SCENE_NUMBER,
@@ -82,7 +100,11 @@ static const struct scene_field stabilise_fields[] = {
      .offset = SCENE_NOWHERE,
      .meaning = "treatment of nodes with little mass"},
     {.key = "front_smoothing", .unsupported = true},
-    {.key = "settle", .unsupported = true},
+    {.key = "settle",
+     .kind = SCENE_OBJECT,
+     .unit = "1",
+     .fields = settle_fields,
+     .meaning = "what comes to rest before t = 0"},
     {.key = NULL},
 };
 

@@ -3,7 +3,9 @@
 #include "materials/material.h"
 #include "seeding/seeding_lattice.h"
 #include "seeding/seeding_stress.h"
+#include "seeding/seeding_traction.h"
 #include "seeding/seeding_velocity.h"
+#include "state/traction_layout.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -18,6 +20,9 @@ void seeding_release(struct particle_seed *seed)
     }
     for (size_t k = 0; k < 6; k++)
         free(seed->stress[k]);
+    for (size_t k = 0; seed->traction != NULL && k < seed->traction_components; k++)
+        free(seed->traction[k]);
+    free(seed->traction);
     free(seed->volume);
     free(seed->mass);
     free(seed->body);
@@ -70,6 +75,13 @@ static bool allocate(struct particle_seed *seed, const struct talus_scene *scene
         seed->stress[k] = calloc(slots, sizeof(double));
         complete &= seed->stress[k] != NULL;
     }
+    seed->traction_components = traction_component_count(scene);
+    seed->traction = calloc(seed->traction_components + 1, sizeof *seed->traction);
+    for (size_t k = 0; seed->traction != NULL && k < seed->traction_components; k++) {
+        seed->traction[k] = calloc(slots, sizeof(double));
+        complete &= seed->traction[k] != NULL;
+    }
+    complete &= seed->traction != NULL;
     seed->volume = calloc(slots, sizeof(double));
     seed->mass = calloc(slots, sizeof(double));
     seed->body = calloc(slots, sizeof(uint16_t));
@@ -141,6 +153,7 @@ static enum talus_status seed_body(const struct talus_scene *scene, size_t body_
     }
     const struct talus_material *material = &scene->materials[body->material_index];
     values.density = material->values[MATERIAL_VALUE_DENSITY];
+    const size_t first = *particle;
     struct seeding_row row;
     uint64_t index[3];
     for (index[2] = 0; index[2] < (uint64_t)values.lattice.count[2]; index[2]++) {
@@ -151,6 +164,9 @@ static enum talus_status seed_body(const struct talus_scene *scene, size_t body_
                     write_particle(seed, (*particle)++, body_index, &values, index);
         }
     }
+    if (seeding_write_tractions(scene, &values.lattice, first, seed) != 0)
+        return talus_error_set(error, TALUS_MEMORY, "memory", "/bodies",
+                               "no memory for the loaded faces");
     return TALUS_OK;
 }
 

@@ -10,11 +10,13 @@
  * The id of a particle is its index here. Arrays are owned by the seed. */
 struct particle_seed {
     size_t count;
-    double *position[3];   /* [count] m; components beyond the dimension 0 */
-    double *velocity[3];   /* [count] m/s */
-    double *volume;        /* [count] current volume, m^3 (per metre / m^2) */
-    double *mass;          /* [count] kg = density x volume */
-    double *stress[6];     /* [count] initial Cauchy stress [Pa]; NULL if no body has any */
+    double *position[3]; /* [count] m; components beyond the dimension 0 */
+    double *velocity[3]; /* [count] m/s */
+    double *volume;      /* [count] current volume, m^3 (per metre / m^2) */
+    double *mass;        /* [count] kg = density x volume */
+    double *stress[6];   /* [count] initial Cauchy stress [Pa]; NULL if no body has any */
+    double **traction;   /* [traction_components][count] m^2, see state/traction_layout.h */
+    size_t traction_components;
     uint16_t *body;        /* [count] index of the body */
     double (*spacing)[3];  /* [body_count] of the particles along the axes of the body's lattice,
                               with  which they fill their volume [m]; 0: a list of points */

@@ -15,6 +15,20 @@ double seeding_cylinder_axis(const struct talus_body *body, double axis[3])
     return length;
 }
 
+void seeding_perpendicular(const double n[3], double u[3], double v[3])
+{
+    int least = 0;
+    for (int k = 1; k < 3; k++) {
+        if (fabs(n[k]) < fabs(n[least]))
+            least = k;
+    }
+    const double norm = sqrt(1.0 - n[least] * n[least]);
+    for (int k = 0; k < 3; k++)
+        u[k] = ((k == least ? 1.0 : 0.0) - n[least] * n[k]) / norm;
+    for (int k = 0; k < 3; k++)
+        v[k] = n[(k + 1) % 3] * u[(k + 2) % 3] - n[(k + 2) % 3] * u[(k + 1) % 3];
+}
+
 static void include(double min[3], double max[3], const double point[3])
 {
     for (size_t k = 0; k < 3; k++) {

@@ -60,6 +60,9 @@ void seeding_shape_line(const struct seeding_shape *shape, const double point[3]
 /* Unit axis of a cylinder; returns its length [m]. */
 double seeding_cylinder_axis(const struct talus_body *body, double axis[3]);
 
+/* Unit vectors u, v that with the unit vector n make a right-handed basis. */
+void seeding_perpendicular(const double n[3], double u[3], double v[3]);
+
 /* Volume [m^3, m^2 x 1 m, m x 1 m^2]: closed form for everything that is not cut and for polygons,
  * integrated to 1e-11 of the bounding box for a cut sphere or cylinder. */
 /* Length, area or volume [m, m^2, m^3]: closed form for everything that is not cut, integrated to

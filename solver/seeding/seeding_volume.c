@@ -130,24 +130,10 @@ static void slicing_init(struct slicing *slicing, const struct seeding_shape *sh
     range[1] = fmin(body->radius, shape->max[2] - body->centre[2]);
     if (body->shape == TALUS_BODY_SPHERE)
         return;
-    double *n = slicing->normal, *u = slicing->u, *v = slicing->v;
     memcpy(slicing->origin, body->from, sizeof slicing->origin);
-    for (int k = 0; k < 3; k++)
-        n[k] = body->to[k] - body->from[k];
-    double length = hypot(hypot(n[0], n[1]), n[2]);
-    int least = 0;
-    for (int k = 0; k < 3; k++) {
-        n[k] /= length;
-        if (fabs(n[k]) < fabs(n[least]))
-            least = k;
-    }
-    double norm = sqrt(1.0 - n[least] * n[least]);
-    for (int k = 0; k < 3; k++)
-        u[k] = ((k == least ? 1.0 : 0.0) - n[least] * n[k]) / norm;
-    for (int k = 0; k < 3; k++)
-        v[k] = n[(k + 1) % 3] * u[(k + 2) % 3] - n[(k + 2) % 3] * u[(k + 1) % 3];
     range[0] = 0.0;
-    range[1] = length;
+    range[1] = seeding_cylinder_axis(body, slicing->normal);
+    seeding_perpendicular(slicing->normal, slicing->u, slicing->v);
 }
 
 static double cut_volume(const struct seeding_shape *shape)

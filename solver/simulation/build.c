@@ -2,6 +2,7 @@
 /* From a scene to a run without particles: materials, walls, layout, scratch. */
 #include "simulation/scene_copy.h"
 #include "simulation/simulation_private.h"
+#include "state/traction_layout.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -30,6 +31,19 @@ static const struct material *model_of(const struct talus_scene *scene, size_t i
 static bool strains_across(const struct talus_scene *scene)
 {
     return scene->dimension == TALUS_PLANE_STRESS || scene->dimension == TALUS_AXISYMMETRIC;
+}
+
+/* True if a traction turns with the material. */
+static bool tractions_follow(const struct talus_scene *scene)
+{
+    for (size_t index = 0; index < scene->body_count; index++) {
+        const struct talus_body *body = &scene->bodies[index];
+        for (size_t entry = 0; entry < body->traction_count; entry++) {
+            if (body->tractions[entry].kind != TALUS_TRACTION_DEAD)
+                return true;
+        }
+    }
+    return false;
 }
 
 static size_t strain_components(const struct talus_scene *scene)
@@ -62,8 +76,10 @@ void run_layout(const struct talus_scene *scene, struct particle_layout *layout)
     count[PARTICLE_DISPLACEMENT] = scene_wants(scene, TALUS_FIELD_DISPLACEMENT) ? axes : 0;
     const bool finite = scene->solver.strain == TALUS_STRAIN_FINITE;
     const bool strain = scene_wants(scene, TALUS_FIELD_STRAIN);
-    if (scene_wants(scene, TALUS_FIELD_DEFORMATION_GRADIENT) || (strain && finite))
+    if (scene_wants(scene, TALUS_FIELD_DEFORMATION_GRADIENT) || (strain && finite) ||
+        tractions_follow(scene))
         count[PARTICLE_GRADIENT] = axes * axes + strains_across(scene);
+    count[PARTICLE_TRACTION] = (uint32_t)traction_component_count(scene);
     count[PARTICLE_TOTAL_STRAIN] = strain && !finite ? tensor : 0;
     const struct shape_domain *domain = shape_table[scene->solver.shape_index]->domain;
     count[PARTICLE_DOMAIN] = domain != NULL ? domain->component_count(axes) : 0;
@@ -254,6 +270,7 @@ enum talus_status run_build(struct run *run, const struct talus_scene *scene,
                      scene->solver.stress_update != TALUS_STRESS_MODIFIED_LAST);
     run_set_callbacks(run, options);
     run_add_slopes(run);
+    run_add_tractions(run);
     run_set_gravity(run);
     run->shape = shape_table[scene->solver.shape_index];
     run->grid.reach = run->shape->reach;

@@ -51,7 +51,8 @@ enum talus_status talus_simulation_estimate(const struct talus_scene *scene,
     const double fixed = scene->solver.time_step;
     estimate->critical_time_step = critical;
     estimate->time_step = fixed > 0 ? fixed : scene->solver.courant * critical;
-    estimate->step_count = saturate(ceil(scene->duration / estimate->time_step * (1 - 1e-12)));
+    estimate->step_count = saturate(
+        ceil((scene->duration + scene->solver.settle_time) / estimate->time_step * (1 - 1e-12)));
     estimate->bytes_per_particle =
         (uint64_t)layout_particle_bytes(&run.grid.layout, number_bytes(scene));
     estimate->memory_bytes = saturate(

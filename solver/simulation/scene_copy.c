@@ -49,6 +49,12 @@ static void copy_body(const struct talus_body *body, struct talus_body *copy, bo
     copy->point_positions =
         duplicate(body->point_positions, 3 * body->point_count * number, failed);
     copy->point_volumes = duplicate(body->point_volumes, body->point_count * number, failed);
+    copy->tractions =
+        duplicate(body->tractions, body->traction_count * sizeof *body->tractions, failed);
+    for (size_t index = 0; copy->tractions != NULL && index < body->traction_count; index++)
+        *failed |= time_table_duplicate(copy->tractions[index].table, 3) != 0;
+    if (copy->tractions == NULL)
+        copy->traction_count = 0;
 }
 
 static void copy_named(const struct talus_scene *scene, struct talus_scene *copy, bool *failed)

@@ -43,13 +43,10 @@ static void add_text(uint64_t *hash, const char *text)
 static void add_solver(uint64_t *hash, const struct talus_scene *scene)
 {
     const struct talus_solver_options *solver = &scene->solver;
-    const double reals[] = {solver->time_step,
-                            solver->courant,
-                            solver->pic_rate,
-                            solver->viscous_damping,
-                            solver->local_damping,
-                            solver->force_ramp,
-                            scene->grid.outside_mass_limit};
+    const double reals[] = {
+        solver->time_step,       solver->courant,        solver->pic_rate,
+        solver->viscous_damping, solver->local_damping,  solver->force_ramp,
+        solver->settle_time,     solver->settle_damping, scene->grid.outside_mass_limit};
     add_number(hash, scene->axis_count);
     add_number(hash, (uint64_t)scene->dimension);
     add_reals(hash, scene->grid.cell, 3);
@@ -90,6 +87,20 @@ static void add_materials(uint64_t *hash, const struct talus_scene *scene)
     }
 }
 
+static void add_tractions(uint64_t *hash, const struct talus_body *body)
+{
+    add_number(hash, body->traction_count);
+    for (size_t index = 0; index < body->traction_count; index++) {
+        const struct talus_traction *traction = &body->tractions[index];
+        add_number(hash, traction->face);
+        add_number(hash, traction->last_face);
+        add_number(hash, (uint64_t)traction->kind);
+        add_number(hash, traction->is_pressure);
+        add_reals(hash, traction->value, 3);
+        add_tables(hash, traction->table, 3);
+    }
+}
+
 static void add_bodies(uint64_t *hash, const struct talus_scene *scene)
 {
     add_number(hash, scene->body_count);
@@ -126,6 +137,7 @@ static void add_bodies(uint64_t *hash, const struct talus_scene *scene)
         add_reals(hash, body->beam_to, 3);
         add_reals(hash, body->beam_tip, 3);
         add_reals(hash, body->stress, 6);
+        add_tractions(hash, body);
         add_reals(hash, reals, sizeof reals / sizeof reals[0]);
     }
 }

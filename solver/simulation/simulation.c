@@ -126,6 +126,9 @@ static enum talus_status place_particle(struct run *run, const struct particle_s
     record->values[layout->first_component[PARTICLE_VOLUME]] = (real)seed->volume[particle];
     if (run->shape->domain != NULL)
         set_domain(run, seed, particle, record);
+    for (size_t component = 0; component < seed->traction_components; component++)
+        record->values[layout->first_component[PARTICLE_TRACTION] + component] =
+            (real)seed->traction[component][particle];
     set_initial_strain(run, seed, particle, record);
     size_t slot = 0;
     if (sparse_grid_insert(&run->grid, cell, record, &slot) == BLOCK_NONE)
@@ -304,9 +307,12 @@ enum talus_status talus_simulation_step(struct talus_simulation *simulation,
                                "the simulation has become unstable and cannot go on");
     if (run->time_step <= 0)
         return TALUS_OK;
+    const bool settles = run_is_settling(run);
     const enum talus_status status = take_step(simulation, error);
     if (status != TALUS_OK)
         return status;
+    if (settles && !run_is_settling(run))
+        probes_locate(simulation);
     const double fixed = run->scene.solver.time_step;
     if (fixed > run->critical_time_step && !run->over_critical_warned) {
         run->over_critical_warned = true;
@@ -367,7 +373,7 @@ void talus_simulation_get_state(const struct talus_simulation *simulation,
 enum talus_status talus_simulation_set_duration(struct talus_simulation *simulation,
                                                 double duration, struct talus_error *error)
 {
-    if (!(duration >= simulation->run.time) || !isfinite(duration))
+    if (!(duration >= fmax(simulation->run.time, 0)) || !isfinite(duration))
         return talus_error_set(error, TALUS_INVALID, "range", "/duration",
                                "the end %.6g s is before the present time %.6g s", duration,
                                simulation->run.time);

@@ -7,18 +7,25 @@
 #include <stdlib.h>
 #include <string.h>
 
+static void release_body(struct talus_body *body)
+{
+    for (size_t index = 0; index < body->traction_count; index++)
+        time_table_release(body->tractions[index].table, 3);
+    free(body->name);
+    free(body->vertices);
+    free(body->point_positions);
+    free(body->point_volumes);
+    free(body->tractions);
+}
+
 void talus_scene_release(struct talus_scene *scene)
 {
     for (size_t index = 0; index < scene->material_count; index++) {
         free(scene->materials[index].name);
         free(scene->materials[index].values);
     }
-    for (size_t index = 0; index < scene->body_count; index++) {
-        free(scene->bodies[index].name);
-        free(scene->bodies[index].vertices);
-        free(scene->bodies[index].point_positions);
-        free(scene->bodies[index].point_volumes);
-    }
+    for (size_t index = 0; index < scene->body_count; index++)
+        release_body(&scene->bodies[index]);
     for (size_t index = 0; index < scene->boundary_count; index++) {
         free(scene->boundaries[index].name);
         time_table_release(scene->boundaries[index].velocity_tables, 3);

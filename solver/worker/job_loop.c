@@ -32,6 +32,18 @@ enum talus_status job_take_sample(struct job_run *run, struct talus_error *error
     return TALUS_OK;
 }
 
+enum talus_status job_take_first(struct job_run *run, struct talus_error *error)
+{
+    struct talus_simulation_state state;
+    talus_simulation_get_clock(run->simulation, &state);
+    if (state.time < 0.0)
+        return TALUS_OK;
+    enum talus_status status = job_take_sample(run, error);
+    if (status == TALUS_OK)
+        status = job_take_frame(run, error);
+    return status;
+}
+
 /* True if the present step end is the one nearest to k x every for the next k, which then moves
  * on. Where `every` is below the time step several k fall on one step end. */
 static bool is_due(const struct job_run *run, double time, double every, uint64_t *next)
@@ -81,6 +93,7 @@ enum talus_status job_loop(struct job_run *run, struct talus_error *error)
     while (!state.finished) {
         double begin = job_now();
         double stepped = (double)state.particle_count;
+        bool settles = state.time < 0.0;
         expect_sample(run, &state);
         status = talus_simulation_step(run->simulation, error);
         double now = job_now();
@@ -92,7 +105,7 @@ enum talus_status job_loop(struct job_run *run, struct talus_error *error)
         /* At the end every time is "nearest"; the last row and frame are taken below. */
         if (state.finished)
             break;
-        status = take_due(run, &state, error);
+        status = settles ? job_take_first(run, error) : take_due(run, &state, error);
         if (status == TALUS_OK && now - run->clock.attended >= attend_interval)
             status = job_attend(run, now, error);
         if (status != TALUS_OK)

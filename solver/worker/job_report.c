@@ -35,8 +35,9 @@ static struct pace find_pace(const struct job_run *run, const struct talus_simul
     struct pace pace = {.fraction = 1.0, .eta_seconds = NAN};
     double done = state->time - run->clock.start_time;
     double left = state->duration - state->time;
-    if (state->duration > 0.0 && !state->finished)
-        pace.fraction = fmin(state->time / state->duration, 1.0);
+    double settle = run->scene.solver.settle_time;
+    if (state->duration + settle > 0.0 && !state->finished)
+        pace.fraction = fmin((state->time + settle) / (state->duration + settle), 1.0);
     if (state->finished)
         pace.eta_seconds = 0.0;
     else if (done > 0.0)

@@ -96,6 +96,8 @@ TALUS_MUST_CHECK enum talus_status job_loop(struct job_run *run, struct talus_er
  * written, and announced, in the background. */
 TALUS_MUST_CHECK enum talus_status job_take_sample(struct job_run *run, struct talus_error *error);
 TALUS_MUST_CHECK enum talus_status job_take_frame(struct job_run *run, struct talus_error *error);
+/* Both, of t = 0; nothing as long as the scene settles. */
+TALUS_MUST_CHECK enum talus_status job_take_first(struct job_run *run, struct talus_error *error);
 
 /* job_attend.c: between steps: signals, control.json, limits, checkpoints, warnings, events. */
 TALUS_MUST_CHECK enum talus_status job_attend(struct job_run *run, double now,

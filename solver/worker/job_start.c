@@ -253,11 +253,8 @@ static enum talus_status start_in_folder(struct job_run *run, const struct scene
         status = pass_scene_warnings(run, warnings, error);
     if (status == TALUS_OK)
         status = job_steer(run, true, error);
-    if (status == TALUS_OK && !restored) {
-        status = job_take_sample(run, error);
-        if (status == TALUS_OK)
-            status = job_take_frame(run, error);
-    }
+    if (status == TALUS_OK && !restored)
+        status = job_take_first(run, error);
     return status;
 }
 
