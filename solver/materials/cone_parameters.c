@@ -36,7 +36,7 @@ static enum cone_fit read_fit(const double *values)
     return associated ? CONE_FIT_PLANE_STRAIN_ASSOCIATED : CONE_FIT_PLANE_STRAIN;
 }
 
-static const char *flow_key(const double *values)
+const char *cone_flow_key(const double *values)
 {
     if (!isnan(values[CONE_VALUE_FLOW_SLOPE]))
         return "flow_slope";
@@ -56,16 +56,16 @@ void cone_check(const double *values, struct material_issues *issues)
                            cone_fit_names[(size_t)values[CONE_VALUE_CONE_FIT]],
                            cone_slope_limit(fit));
     if (fit == CONE_FIT_PLANE_STRAIN && flow_slope != 0.0)
-        material_issue_add(issues, flow_key(values), "contradiction",
+        material_issue_add(issues, cone_flow_key(values), "contradiction",
                            "the plane_strain fit is known for dilation_angle 0 and for a dilation "
                            "angle equal to the friction angle only");
     else if (flow_slope > slope * (1.0 + 1e-9))
-        material_issue_add(issues, flow_key(values), "range",
+        material_issue_add(issues, cone_flow_key(values), "range",
                            "dilation beyond the friction (rho_G %.4g > rho_F %.4g) would make "
                            "plastic flow a source of energy",
                            flow_slope, slope);
     if (2.0 * elasticity.shear + 9.0 * elasticity.bulk * slope * flow_slope <= 0.0)
-        material_issue_add(issues, flow_key(values), "range",
+        material_issue_add(issues, cone_flow_key(values), "range",
                            "contraction is so strong that flow meets no yield surface: "
                            "2 G + 9 K rho_F rho_G must be positive");
 }

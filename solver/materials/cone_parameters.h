@@ -30,6 +30,8 @@ struct cone cone_read(const double *values);
 /* Adds what contradicts itself or would make plastic flow a source of energy. The elastic constants
  * have passed their own check. */
 void cone_check(const double *values, struct material_issues *issues);
+/* The key that sets the dilation. */
+const char *cone_flow_key(const double *values);
 /* Friction angle [deg] of the cone in triaxial compression. */
 double cone_friction_angle_deg(const double *values);
 

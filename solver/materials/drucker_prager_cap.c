@@ -12,8 +12,14 @@ static size_t check(const double *values, struct material_issue *items, size_t c
 {
     struct material_issues issues = {.items = items, .capacity = capacity};
     elasticity_check(values, &issues);
-    if (issues.count == 0)
-        cone_check(values, &issues);
+    if (issues.count > 0)
+        return issues.count;
+    cone_check(values, &issues);
+    struct cone cone = cone_read(values);
+    if (issues.count == 0 && cone.slope * cone.flow_slope <= -1.0)
+        material_issue_add(&issues, cone_flow_key(values), "range",
+                           "contraction is so strong that flow at the tip of the cone would be a "
+                           "source of energy: rho_F rho_G must be above -1");
     return issues.count;
 }
 

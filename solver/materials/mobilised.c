@@ -228,9 +228,11 @@ void mobilised_mark_yielding(const struct mobilised *mobilised, const struct mat
     }
 }
 
-static void return_stress(const struct mobilised *mobilised, size_t count, const real *slopes,
-                          const real *flow_slopes, struct invariants *invariants,
-                          struct mobilised_flow *flow)
+/* With `stops`, contraction ends where the mean stress turns tensile, or at once if nothing
+ * resists; without it at the apex, which is the same if that is at I1 = 0. */
+TALUS_INLINE void return_kernel(const struct mobilised *mobilised, size_t count, bool stops,
+                                const real *slopes, const real *flow_slopes,
+                                struct invariants *invariants, struct mobilised_flow *flow)
 {
     const struct stiffness stiffness = elasticity_stiffness(&mobilised->elasticity);
     const real apex = (real)mobilised->apex;
@@ -247,26 +249,44 @@ static void return_stress(const struct mobilised *mobilised, size_t count, const
         real excess = maximum(norm + slope * (first - apex), 0);
         real resistance = (shear + bulk * slope * flow_slope) * norm;
         real share = excess / (resistance > 0 ? resistance : 1); /* multiplier over |s| */
-        real returned = first - bulk * flow_slope * share * norm;
-        /* contraction ends where the mean stress turns tensile */
-        real stop = maximum(first, 0);
-        bool stops = (flow_slope < 0) & (excess > 0) & ((returned > stop) | (resistance <= 0));
-        real divisor = norm > 0 ? norm : 1;
-        real scale = stops ? slope * (apex - stop) / divisor : 1 - shear * share;
-        returned = stops ? stop : returned;
-        /* where the line ends: no deviator left, beyond the apex, or nothing that resists */
-        real beyond = maximum(-scale, returned - apex);
-        bool to_apex = (beyond > 0) | ((resistance <= 0) & (excess > 0) & !stops);
+        real multiplier = share * norm;
+        real scale = 1 - shear * share;
+        real returned = first - bulk * flow_slope * multiplier;
+        real spherical = flow_slope * multiplier;
+        real stuck = resistance > 0 ? 0 : excess;
+        if (stops) {
+            real stop = maximum(first, 0);
+            real past = minimum(minimum(-flow_slope, apex - stop), maximum(returned - stop, stuck));
+            real stopped = slope * (apex - stop) / (norm > 0 ? norm : 1);
+            bool is_past = past > 0;
+            scale = is_past ? stopped : scale;
+            returned = is_past ? stop : returned;
+            spherical = is_past ? (first - stop) * bulk_inverse : spherical;
+            multiplier = is_past ? (1 - stopped) * norm * shear_inverse : multiplier;
+            stuck = minimum(stuck, -past);
+        }
+        /* where the line ends: no deviator left and under tension, beyond the apex, or nothing that
+         * resists */
+        real short_of = minimum(first - apex, -scale);
+        bool to_apex = maximum(maximum(short_of, returned - apex), stuck) > 0;
         scale = to_apex ? 0 : scale;
-        returned = to_apex ? apex : returned;
-        bool along_line = !(to_apex | stops);
         invariants->scale[index] = scale;
-        invariants->returned[index] = returned;
-        invariants->spherical[index] =
-            along_line ? flow_slope * share * norm : (first - returned) * bulk_inverse;
-        flow->deviatoric[index] = along_line ? share * norm : (1 - scale) * norm * shear_inverse;
+        invariants->returned[index] = to_apex ? apex : returned;
+        invariants->spherical[index] = to_apex ? (first - apex) * bulk_inverse : spherical;
+        flow->deviatoric[index] = to_apex ? norm * shear_inverse : multiplier;
         flow->left[index] = scale * norm;
     }
+}
+
+static void return_stress(const struct mobilised *mobilised, size_t count, const real *slopes,
+                          const real *flow_slopes, struct invariants *invariants,
+                          struct mobilised_flow *flow)
+{
+    const bool dilates = has_constant_dilation(mobilised) && mobilised->flow_tangent >= 0.0;
+    if (mobilised->apex > 0.0 && !dilates)
+        return_kernel(mobilised, count, true, slopes, flow_slopes, invariants, flow);
+    else
+        return_kernel(mobilised, count, false, slopes, flow_slopes, invariants, flow);
 }
 
 /* Plastic strain, dissipation and history of a return. */

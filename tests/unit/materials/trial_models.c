@@ -95,9 +95,12 @@ static double mobilised_apex(const struct trial_state *state)
 {
     double apex = value_of(state, "apex_stress");
     double residual = value_of(state, "friction.a0");
+    double cohesion = value_of(state, "cohesion");
     if (isnan(residual))
         residual = value_of(state, "friction_angle");
-    return isnan(apex) ? value_of(state, "cohesion") / tan(residual / degrees) : apex;
+    if (isnan(apex))
+        apex = cohesion > 0.0 ? cohesion / tan(residual / degrees) : 0.0;
+    return apex;
 }
 
 /* The cone, and the cut-off at its apex. */
@@ -185,6 +188,8 @@ const struct trial_model trial_models[] = {
     {"mobilised, no dilation", "drucker_prager_mobilised", {ELASTIC, {"friction_angle", 30.0}}, mobilised_cone, true},
     {"mobilised, contraction", "drucker_prager_mobilised", {ELASTIC, {"friction_angle", 30.0}, {"dilation_angle", -20.0}, {"cohesion", 1e3}}, mobilised_cone, true},
     {"mobilised, constant dilation", "drucker_prager_mobilised", {ELASTIC, SOFTENING, {"dilation_angle", 25.0}, {"apex_stress", 500.0}, {"friction.strain_measure", 2.0}}, mobilised_cone, true},
+    {"mobilised, no friction", "drucker_prager_mobilised", {ELASTIC, {"friction_angle", 0.0}, {"dilation_angle", -10.0}}, mobilised_cone, true},
+    {"matsuoka-nakai, no friction", "matsuoka_nakai", {ELASTIC, {"friction.a0", 0.0}, {"friction.a1", 2000.0}, {"friction.a3", 200.0}, {"friction.a5", 200.0}, {"apex_stress", 1e3}}, matsuoka_nakai_surface, true},
     {"matsuoka-nakai, softening", "matsuoka_nakai", {ELASTIC, SOFTENING, {"friction.a5", 200.0}, {"cohesion", 1e3}}, matsuoka_nakai_surface, true},
     {"matsuoka-nakai, no dilation", "matsuoka_nakai", {ELASTIC, {"friction_angle", 30.0}}, matsuoka_nakai_surface, true},
     {"matsuoka-nakai, contraction", "matsuoka_nakai", {ELASTIC, {"friction_angle", 30.0}, {"dilation_angle", -20.0}, {"cohesion", 1e3}}, matsuoka_nakai_surface, true},
