@@ -65,7 +65,9 @@ struct talus_solver_options {
     bool allow_unstable;
     size_t shape_index;                   /* into the table of shapes (solver/shapes) */
     enum talus_gimp_scaling gimp_scaling; /* what the size of particles of gimp_scaled follows */
-    double pic_rate;                      /* lambda [1/s]; 0: pure FLIP */
+    size_t transfer_index; /* into the table of transfers (solver/transfers); 0: FLIP */
+    double pic_rate;       /* FLIP: lambda [1/s]; 0: pure FLIP */
+    double flip_ratio;     /* FLIP: share of FLIP per step, instead of pic_rate; NAN: not given */
     enum talus_stress_update stress_update;
     enum talus_strain strain;
     enum talus_anti_locking_control anti_locking;

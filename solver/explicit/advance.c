@@ -13,16 +13,21 @@
 #include <math.h>
 #include <string.h>
 
-/* The PIC share of a step, 1 - exp(-lambda dt), independent of the step. */
-static void blend_velocity(const struct run *run, const struct particle_block *block,
-                           const struct block_scratch *scratch, size_t count)
+/* The particles take their share of the nodes' velocity. */
+static void blend_velocity(const struct run *run, const struct shape_context *context,
+                           const struct particle_block *block, const struct block_scratch *scratch)
 {
-    const real share = (real)-expm1(-run->scene.solver.pic_rate * run->time_step);
-    for (uint32_t axis = 0; axis < run->grid.domain.axis_count; axis++) {
-        real *velocity = particle_values(&run->grid.layout, block, PARTICLE_VELOCITY, axis);
-        const real speed = (real)(run->grid.domain.cell[axis] / run->time_step);
+    const size_t axes = run->grid.domain.axis_count;
+    const size_t count = (size_t)block->row_count * LANE_COUNT;
+    const real share = (real)run->pic_share;
+    real *velocity[3] = {NULL};
+    for (uint32_t axis = 0; axis < axes; axis++)
+        velocity[axis] = particle_values(&run->grid.layout, block, PARTICLE_VELOCITY, axis);
+    real *const *nodes = share < 1 ? scratch->stress : velocity; /* no stress there yet */
+    run->kernels->gather_values(context, block, axes, nodes, context->nodes->layout.velocity);
+    for (size_t axis = 0; share < 1 && axis < axes; axis++) {
         for (size_t slot = 0; slot < count; slot++)
-            velocity[slot] += share * (speed * scratch->displacement[axis][slot] - velocity[slot]);
+            velocity[axis][slot] += share * (nodes[axis][slot] - velocity[axis][slot]);
     }
 }
 
@@ -189,13 +194,15 @@ static void gather_motion(struct run *run, struct block_scratch *scratch,
 {
     const struct shape_context context = run_shape_context(run, still ? 0.0 : run->time_step);
     const size_t count = (size_t)block->row_count * LANE_COUNT;
-    const bool corrects =
-        !run_kicks(run) || block->constrained || run->scene.solver.local_damping > 0;
-    run->kernels->gather(&context, block,
-                         GATHER_DISPLACEMENT | more | (corrects && !still ? GATHER_CORRECTION : 0U),
-                         scratch);
-    if (run->scene.solver.pic_rate > 0 && !still)
-        blend_velocity(run, block, scratch, count);
+    const bool corrects = run->pic_share < 1 && (!run_kicks(run) || block->constrained ||
+                                                 run->scene.solver.local_damping > 0);
+    const bool affine = run->grid.layout.component_count[PARTICLE_AFFINE] > 0;
+    unsigned what = GATHER_DISPLACEMENT | more;
+    if (!still)
+        what |= (corrects ? GATHER_CORRECTION : 0U) | (affine ? GATHER_AFFINE : 0U);
+    run->kernels->gather(&context, block, what, scratch);
+    if (run->pic_share > 0 && !still)
+        blend_velocity(run, &context, block, scratch);
     record_displacement(run, block, scratch, count);
 }
 

@@ -176,6 +176,7 @@ struct run {
     size_t initial_particle_count;
 
     double time, time_step, critical_time_step, last_time_step, interval;
+    double pic_share; /* of the present step, 0..1 */
     uint64_t step;
     double largest_speed;       /* of particles, after the last step [m/s] */
     double signal_speed;        /* largest c + |v| of particles, after the last step [m/s] */
@@ -301,6 +302,10 @@ int run_prepare_tiles(struct run *run);
 int run_reserve_scratch(struct run *run);
 /* Mass and forces of the initial state. */
 TALUS_MUST_CHECK enum talus_status run_start(struct run *run, struct talus_error *error);
+
+/* ---- affine_start.c ---- */
+/* PARTICLE_AFFINE of the initial state, out of the masses at the nodes and the velocities. */
+void run_start_affine(struct run *run);
 
 /* ---- energy.c ---- */
 /* Kinetic, strain and potential energy of the present state into run->energy: a pass over all

@@ -5,6 +5,7 @@
 #include "explicit/stage_clock.h"
 #include "health/health.h"
 #include "math/sticky.h"
+#include "transfers/velocity_transfer.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -91,6 +92,8 @@ static void count_crossers(const struct run *run, struct stage_clock *clock)
 static void take_passes(struct run *run, struct stage_clock *clock)
 {
     const bool first = run->scene.solver.stress_update == TALUS_STRESS_FIRST;
+    const struct talus_solver_options *options = &run->scene.solver;
+    run->pic_share = transfer_of(options)->pic_share(options, run->time_step);
     if (run_kicks(run)) {
         run_kick_nodes(run);
         stage_clock_lap(clock, STAGE_KICK_NODES);
@@ -198,6 +201,8 @@ enum talus_status run_start(struct run *run, struct talus_error *error)
         return talus_error_set(error, TALUS_MEMORY, "memory", "", "out of memory at the start");
     partition_outbox(run);
     run_pass(run, start_tile);
+    if (run->grid.layout.component_count[PARTICLE_AFFINE] > 0)
+        run_start_affine(run);
     const struct tile_sums sums = sum_tiles(run);
     run->largest_speed = sqrt(sums.speed_squared);
     run->signal_speed = sums.signal_speed;

@@ -5,6 +5,7 @@
 
 #include "shapes/shape.h"
 #include "talus/version.h"
+#include "transfers/velocity_transfer.h"
 
 static json_t *describe_particle_fields(void)
 {
@@ -29,6 +30,17 @@ static json_t *describe_shapes(void)
     return list;
 }
 
+static json_t *describe_transfers(void)
+{
+    json_t *list = json_array();
+    for (size_t index = 0; index < transfer_count; index++)
+        (void)json_array_append_new(list, json_pack("{s:s, s:s, s:s}", "transfer",
+                                                    transfer_table[index]->name, "summary",
+                                                    transfer_table[index]->summary, "reference",
+                                                    transfer_table[index]->reference));
+    return list;
+}
+
 json_t *scene_describe(void)
 {
     static const struct {
@@ -47,6 +59,7 @@ json_t *scene_describe(void)
                                   scene_fields_describe(parts[index].table));
     (void)json_object_set_new(answer, "materials", scene_materials_describe());
     (void)json_object_set_new(answer, "shapes", describe_shapes());
+    (void)json_object_set_new(answer, "transfers", describe_transfers());
     (void)json_object_set_new(answer, "conditions", scene_conditions_describe());
     (void)json_object_set_new(answer, "fields", describe_particle_fields());
     return answer;

@@ -2,6 +2,7 @@
 /* How the equations are solved. */
 #include "scene/scene_sections.h"
 
+#define PIC_SHARE "share of PIC"
 #define AT(member) offsetof(struct talus_scene, solver.member)
 
 static const char *const kind_words[] = {"explicit", NULL};
@@ -14,8 +15,12 @@ static const char *const shape_words[] = {
 };
 static const char *const shape_lacking[] = {"cpdi", "cpdi_hybrid", "quadratic", NULL};
 static const char *const gimp_scaling_words[] = {"volume", "stretch", NULL};
-static const char *const transfer_words[] = {"flip", NULL};
-static const char *const transfer_lacking[] = {"pic", "apic", NULL};
+static const char *const transfer_words[] = {
+#define TRANSFER(symbol) #symbol,
+#include "transfers/transfers.def"
+#undef TRANSFER
+    NULL,
+};
 static const char *const stress_words[] = {"modified_last", "last", "first", NULL};
 static const char *const strain_words[] = {"finite", "small", NULL};
 static const char *const strain_lacking[] = {"rate", NULL};
@@ -156,17 +161,26 @@ const struct scene_field scene_solver_fields[] = {
      .kind = SCENE_CHOICE,
      .unit = "1",
      .choices = transfer_words,
-     .lacking = transfer_lacking,
-     .offset = SCENE_NOWHERE,
+     .storage = SCENE_STORE_SIZE,
+     .offset = AT(transfer_index),
      .meaning = "how velocities go between particles and grid"},
     {.key = "pic_rate",
      .kind = SCENE_NUMBER,
      .unit = "1/s",
      .minimum = 0.0,
      .maximum = INFINITY,
+     .alternative = PIC_SHARE,
      .offset = AT(pic_rate),
-     .meaning = "lambda: the PIC share of a step is 1 - exp(-lambda dt)"},
-    {.key = "flip_ratio", .unsupported = true},
+     .meaning = "flip: lambda; the PIC share of a step is 1 - exp(-lambda dt)"},
+    {.key = "flip_ratio",
+     .kind = SCENE_NUMBER,
+     .unit = "1",
+     .minimum = 0.0,
+     .maximum = 1.0,
+     .default_value = NAN,
+     .alternative = PIC_SHARE,
+     .offset = AT(flip_ratio),
+     .meaning = "flip: its share of a step, as the sources give it; results depend on the step"},
     {.key = "stress_update",
      .kind = SCENE_CHOICE,
      .unit = "1",

@@ -24,5 +24,6 @@ const struct shape shape_linear = {
     /* Spectral radius of the step of full cells, the least favourable of 1-D to 3-D, solid and
      * fluid, with one to four particles per cell and axis. */
     .courant_limit = {1.26, 0.63, 1.26},
+    .light_nodes = true,
     .kernels = {&linear_kernels_1, &linear_kernels_2, &linear_kernels_3},
 };

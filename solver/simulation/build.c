@@ -1,8 +1,11 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* From a scene to a run without particles: materials, walls, layout, scratch. */
+#include "simulation/method_check.h"
 #include "simulation/scene_copy.h"
 #include "simulation/simulation_private.h"
 #include "state/traction_layout.h"
+
+#include "transfers/velocity_transfer.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -65,6 +68,7 @@ void run_layout(const struct talus_scene *scene, struct particle_layout *layout)
     }
     uint32_t *count = layout->component_count;
     count[PARTICLE_POSITION] = count[PARTICLE_VELOCITY] = axes;
+    count[PARTICLE_AFFINE] = transfer_of(&scene->solver)->affine ? axes * axes : 0;
     count[PARTICLE_MASS] = count[PARTICLE_VOLUME] = 1;
     count[PARTICLE_STRAIN] = volumetric ? 1 : tensor;
     count[PARTICLE_HISTORY] = history;
@@ -254,7 +258,7 @@ enum talus_status run_build(struct run *run, const struct talus_scene *scene,
     if (scene->material_count > 64)
         return talus_error_set(error, TALUS_INVALID, "range", "/materials",
                                "%zu materials; at most 64 are possible", scene->material_count);
-    if (scene_check_dimension(scene, error) != TALUS_OK)
+    if (scene_check_dimension(scene, error) != TALUS_OK || method_check(scene, error) != TALUS_OK)
         return error->status;
     if (refuse_body_filters(scene, error) != TALUS_OK ||
         refuse_mixed_elimination(scene, error) != TALUS_OK)

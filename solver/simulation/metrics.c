@@ -53,9 +53,10 @@ static void add_audit(struct talus_simulation *simulation)
         gap += difference * difference;
         start += audit->initial_momentum[axis] * audit->initial_momentum[axis];
     }
-    /* What moves without a net momentum, a body that spins, has a scale of its own: sqrt(2 K m). */
-    const double scale =
-        audit->exchanged + sqrt(start) + sqrt(2 * run->energy.kinetic * audit->initial_mass);
+    /* What moves without a net momentum, a body that spins, has a scale of its own: sqrt(2 K m). Of
+     * what it started with too: a transfer may have brought it to rest. */
+    const double energy = fmax(run->energy.kinetic, audit->initial_stored);
+    const double scale = audit->exchanged + sqrt(start) + sqrt(2 * energy * audit->initial_mass);
     const double turnover = run_energy_turnover(run), loss = run_numerical_loss(run);
     add_metric(simulation, "", "mass_error",
                fabs(mass + audit->eliminated_mass - audit->initial_mass) / audit->initial_mass);

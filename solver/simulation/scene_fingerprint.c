@@ -56,6 +56,7 @@ static void add_solver(uint64_t *hash, const struct talus_scene *scene)
     add_number(hash, (uint64_t)scene->grid.outside);
     add_number(hash, solver->shape_index);
     add_number(hash, (uint64_t)solver->gimp_scaling);
+    add_number(hash, solver->transfer_index);
     add_number(hash, (uint64_t)solver->stress_update);
     add_number(hash, (uint64_t)solver->strain);
     add_number(hash, (uint64_t)solver->anti_locking);
@@ -63,6 +64,7 @@ static void add_solver(uint64_t *hash, const struct talus_scene *scene)
     add_number(hash, (uint64_t)solver->anti_locking_apply);
     add_number(hash, (uint64_t)solver->precision);
     add_reals(hash, reals, sizeof reals / sizeof reals[0]);
+    add_reals(hash, &solver->flip_ratio, 1);
     add_reals(hash, scene->gravity, 3);
     add_tables(hash, scene->gravity_table, 3);
     add_number(hash, scene->slope_count);
@@ -139,6 +141,7 @@ static void add_bodies(uint64_t *hash, const struct talus_scene *scene)
         add_reals(hash, body->stress, 6);
         add_tractions(hash, body);
         add_reals(hash, reals, sizeof reals / sizeof reals[0]);
+    add_reals(hash, &solver->flip_ratio, 1);
     }
 }
 

@@ -87,6 +87,8 @@ static void print_description(const json_t *description)
     print_entries(json_object_get(description, "materials"), "model");
     (void)printf("\nshapes\n");
     print_entries(json_object_get(description, "shapes"), "shape");
+    (void)printf("\ntransfers\n");
+    print_entries(json_object_get(description, "transfers"), "transfer");
     (void)printf("\nconditions\n");
     print_entries(json_object_get(description, "conditions"), "condition");
     (void)printf("\nfields\n");

@@ -2,6 +2,7 @@
 #include "reference_mpm.h"
 
 #include "materials/material.h"
+#include "transfers/velocity_transfer.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -63,6 +64,11 @@ static int cell_index(const struct reference *reference, const double position[3
     return cell;
 }
 
+static bool carries_affine(const struct reference *reference)
+{
+    return strcmp(transfer_of(&reference->scene->solver)->name, "apic") == 0;
+}
+
 /* m_i, f_i = -sum V0 tau G, and P_i if wanted, of the present positions. */
 static void scatter(struct reference *reference)
 {
@@ -93,63 +99,15 @@ static void scatter_momentum(struct reference *reference)
         const struct reference_particle *p = &reference->particles[k];
         const struct support support = find_support(reference, p->position);
         for (int i = 0; i < support.count; i++) {
-            for (int axis = 0; axis < 3; axis++)
-                support.node[i]->momentum[axis] += support.weight[i] * p->mass * p->velocity[axis];
+            for (int axis = 0; axis < 3; axis++) {
+                double velocity = p->velocity[axis];
+                for (int along = 0; along < 3; along++)
+                    velocity += p->affine.m[axis][along] *
+                                (support.node[i]->position[along] - p->position[along]);
+                support.node[i]->momentum[axis] += support.weight[i] * p->mass * velocity;
+            }
         }
     }
-}
-
-void reference_start(struct reference *reference, const struct talus_scene *scene,
-                     const struct talus_simulation *simulation)
-{
-    struct talus_simulation_state state;
-    struct talus_error error = {0};
-    talus_simulation_get_state(simulation, &state);
-    memset(reference, 0, sizeof *reference);
-    reference->scene = scene;
-    reference->time_step = scene->solver.time_step;
-    reference->particle_count = state.particle_count;
-    reference->node_count = 1;
-    for (size_t axis = 0; axis < 3; axis++) {
-        reference->node_line[axis] =
-            axis < scene->axis_count ? (int)scene->grid.cell_count[axis] + 1 : 1;
-        reference->node_count *= (size_t)reference->node_line[axis];
-    }
-    for (size_t k = 0; k < scene->boundary_count; k++)
-        reference->walls[reference->wall_count++] = reference_wall_read(scene, k);
-    reference->nodes = calloc(reference->node_count, sizeof *reference->nodes);
-    reference->particles = calloc(state.particle_count, sizeof *reference->particles);
-    double *values = calloc(8 * state.particle_count, sizeof *values);
-    if (values == NULL || reference->nodes == NULL || reference->particles == NULL)
-        abort();
-    double *velocity = values + 3 * state.particle_count, *mass = values + 6 * state.particle_count;
-    double *body = values + 7 * state.particle_count;
-    talus_simulation_read_positions(simulation, values);
-    if (talus_simulation_read_field(simulation, TALUS_FIELD_VELOCITY, velocity, &error) !=
-            TALUS_OK ||
-        talus_simulation_read_field(simulation, TALUS_FIELD_MASS, mass, &error) != TALUS_OK ||
-        talus_simulation_read_field(simulation, TALUS_FIELD_BODY, body, &error) != TALUS_OK)
-        abort();
-    double least = INFINITY;
-    for (size_t k = 0; k < state.particle_count; k++) {
-        struct reference_particle *p = &reference->particles[k];
-        memcpy(p->position, values + 3 * k, sizeof p->position);
-        memcpy(p->velocity, velocity + 3 * k, sizeof p->velocity);
-        p->mass = mass[k];
-        p->material = scene->bodies[(size_t)body[k]].material_index;
-        const struct talus_material *material = &scene->materials[p->material];
-        p->reference_volume = p->mass / material->values[MATERIAL_VALUE_DENSITY];
-        p->volume_ratio = 1;
-        p->cell = cell_index(reference, p->position);
-        if (scene->solver.strain == TALUS_STRAIN_FINITE &&
-            !material_table[material->model_index]->volumetric)
-            p->elastic = tensor_unit();
-        least = fmin(least, p->mass);
-    }
-    reference->mass_cutoff = 1e-11 * least;
-    free(values);
-    reference_update_stress(reference, 0);
-    scatter(reference);
 }
 
 void reference_release(struct reference *reference)
@@ -206,8 +164,12 @@ static void kick(struct reference *reference)
         struct reference_particle *p = &reference->particles[k];
         const struct support support = find_support(reference, p->position);
         for (int i = 0; i < support.count; i++) {
-            for (int axis = 0; axis < 3; axis++)
+            for (int axis = 0; axis < 3; axis++) {
                 p->velocity[axis] += support.weight[i] * support.node[i]->kick[axis];
+                for (int along = 0; along < 3 && carries_affine(reference); along++)
+                    p->affine.m[axis][along] +=
+                        support.gradient[i][along] * support.node[i]->kick[axis];
+            }
         }
     }
 }
@@ -352,9 +314,27 @@ static void update_stress_first(struct reference *reference)
     scatter(reference);
 }
 
+/* `apic`: the slope of the nodes' velocity, which for hat functions is its affine part. */
+static void take_affine(struct reference *reference)
+{
+    gather_gradients(reference);
+    for (size_t k = 0; k < reference->particle_count; k++)
+        reference->particles[k].affine = reference->particles[k].gradient;
+}
+
+/* Share of the nodes' velocity in the particles'. */
+static double pic_share(const struct reference *reference)
+{
+    const struct talus_solver_options *solver = &reference->scene->solver;
+    if (strcmp(transfer_of(solver)->name, "flip") != 0)
+        return 1.0;
+    return isnan(solver->flip_ratio) ? 1.0 - exp(-solver->pic_rate * reference->time_step)
+                                     : 1.0 - solver->flip_ratio;
+}
+
 static void move_particles(struct reference *reference)
 {
-    const double rate = reference->scene->solver.pic_rate;
+    const double share = pic_share(reference);
     for (size_t k = 0; k < reference->particle_count; k++) {
         struct reference_particle *p = &reference->particles[k];
         const struct support support = find_support(reference, p->position);
@@ -367,8 +347,7 @@ static void move_particles(struct reference *reference)
             }
         }
         for (int axis = 0; axis < 3; axis++) {
-            p->velocity[axis] += (1.0 - exp(-rate * reference->time_step)) *
-                                 (p->grid_velocity[axis] - p->velocity[axis]);
+            p->velocity[axis] += share * (p->grid_velocity[axis] - p->velocity[axis]);
             p->position[axis] += reference->time_step * p->grid_velocity[axis];
         }
     }
@@ -385,13 +364,91 @@ void reference_step(struct reference *reference)
         update_stress_first(reference);
     for (size_t i = 0; i < reference->node_count; i++)
         update_node(reference, i);
-    if (!first)
+    if (carries_affine(reference))
+        take_affine(reference);
+    else if (!first)
         gather_gradients(reference);
     move_particles(reference);
     if (!first)
         reference_update_stress(reference, reference->time_step);
     scatter(reference);
     reference->time += reference->time_step;
+}
+
+static void place_nodes(struct reference *reference)
+{
+    const struct talus_grid *grid = &reference->scene->grid;
+    for (size_t i = 0; i < reference->node_count; i++) {
+        size_t left = i;
+        for (size_t axis = 0; axis < 3; axis++) {
+            const size_t line = (size_t)reference->node_line[axis];
+            reference->nodes[i].position[axis] =
+                axis < reference->scene->axis_count
+                    ? grid->min[axis] + (double)(left % line) * grid->cell[axis]
+                    : 0.0;
+            left /= line;
+        }
+    }
+}
+
+void reference_start(struct reference *reference, const struct talus_scene *scene,
+                     const struct talus_simulation *simulation)
+{
+    struct talus_simulation_state state;
+    struct talus_error error = {0};
+    talus_simulation_get_state(simulation, &state);
+    memset(reference, 0, sizeof *reference);
+    reference->scene = scene;
+    reference->time_step = scene->solver.time_step;
+    reference->particle_count = state.particle_count;
+    reference->node_count = 1;
+    for (size_t axis = 0; axis < 3; axis++) {
+        reference->node_line[axis] =
+            axis < scene->axis_count ? (int)scene->grid.cell_count[axis] + 1 : 1;
+        reference->node_count *= (size_t)reference->node_line[axis];
+    }
+    for (size_t k = 0; k < scene->boundary_count; k++)
+        reference->walls[reference->wall_count++] = reference_wall_read(scene, k);
+    reference->nodes = calloc(reference->node_count, sizeof *reference->nodes);
+    reference->particles = calloc(state.particle_count, sizeof *reference->particles);
+    double *values = calloc(8 * state.particle_count, sizeof *values);
+    if (values == NULL || reference->nodes == NULL || reference->particles == NULL)
+        abort();
+    double *velocity = values + 3 * state.particle_count, *mass = values + 6 * state.particle_count;
+    double *body = values + 7 * state.particle_count;
+    talus_simulation_read_positions(simulation, values);
+    if (talus_simulation_read_field(simulation, TALUS_FIELD_VELOCITY, velocity, &error) !=
+            TALUS_OK ||
+        talus_simulation_read_field(simulation, TALUS_FIELD_MASS, mass, &error) != TALUS_OK ||
+        talus_simulation_read_field(simulation, TALUS_FIELD_BODY, body, &error) != TALUS_OK)
+        abort();
+    double least = INFINITY;
+    for (size_t k = 0; k < state.particle_count; k++) {
+        struct reference_particle *p = &reference->particles[k];
+        memcpy(p->position, values + 3 * k, sizeof p->position);
+        memcpy(p->velocity, velocity + 3 * k, sizeof p->velocity);
+        p->mass = mass[k];
+        p->material = scene->bodies[(size_t)body[k]].material_index;
+        const struct talus_material *material = &scene->materials[p->material];
+        p->reference_volume = p->mass / material->values[MATERIAL_VALUE_DENSITY];
+        p->volume_ratio = 1;
+        p->cell = cell_index(reference, p->position);
+        if (scene->solver.strain == TALUS_STRAIN_FINITE &&
+            !material_table[material->model_index]->volumetric)
+            p->elastic = tensor_unit();
+        least = fmin(least, p->mass);
+    }
+    reference->mass_cutoff = 1e-11 * least;
+    free(values);
+    place_nodes(reference);
+    reference_update_stress(reference, 0);
+    scatter(reference);
+    if (carries_affine(reference)) {
+        scatter_momentum(reference);
+        for (size_t i = 0; i < reference->node_count; i++)
+            start_node(reference, i);
+        take_affine(reference);
+    }
 }
 
 struct reference_energy reference_energies(const struct reference *reference)

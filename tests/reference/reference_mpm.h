@@ -19,12 +19,14 @@ struct reference_particle {
     double plastic;
     /* of the present step */
     struct tensor gradient, force_stress;
+    struct tensor affine; /* slope of the velocity, apic [1/s] */
     double grid_velocity[3], divergence;
     struct reference_update update;
     int cell;
 };
 
 struct reference_node {
+    double position[3];
     double mass, force[3], momentum[3];
     double kick[3], velocity[3], correction[3];
     double wall_impulse[3]; /* on the material, in the last step */

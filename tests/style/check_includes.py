@@ -28,7 +28,7 @@ ALLOWED = {
     "health": CORE | KINDS | {"explicit"},
     "explicit": CORE | KINDS | STAGES | {"health"},
     "simulation": CORE | KINDS | STAGES | {"seeding", "explicit", "health"},
-    "scene": CORE | KINDS | {"seeding"},
+    "scene": CORE | KINDS | {"seeding", "transfers"},
     "output": CORE,
     "worker": {"base", "math", "shapes", "materials", "boundaries", "scene", "output"},
 }

@@ -19,6 +19,7 @@ void simulation_fixture_init(struct simulation_fixture *fixture, size_t axis_cou
         scene->grid.cell_count[axis] = axis < axis_count ? count[axis] : 1;
     }
     scene->solver.courant = 0.4;
+    scene->solver.flip_ratio = NAN;
     scene->solver.precision = talus_simulation_precision();
     scene->energy_growth_limit = 0.01;
     scene->materials = fixture->materials;

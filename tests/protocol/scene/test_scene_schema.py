@@ -19,7 +19,7 @@ MISTAKES = [
     ("block", ["grid", "cel"], 1),
     ("block", ["grid", "cell"], [0.5, -1]),
     ("block", ["grid", "outside"], "ignore"),
-    ("block", ["solver"], {"shape": "gimp"}),
+    ("block", ["solver"], {"shape": "gimp3"}),
     ("block", ["solver"], {"time_step": "now"}),
     ("block", ["solver"], {"theta": 0.5}),
     ("block", ["solver"], {"tolerance": 1}),
@@ -87,7 +87,7 @@ class Schema(unittest.TestCase):
 
     def test_what_is_missing_from_the_build_is_missing_from_the_schema(self):
         text = str(self.schema)
-        for word in ("quasi_static", "gimp", "apic", "flip_ratio", "polygon",
+        for word in ("quasi_static", "polygon",
                      "traction", "front_smoothing", "hybrid",
                      "max_iterations"):
             self.assertNotIn(f"'{word}'", text)

@@ -1,0 +1,64 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+#include "simulation/method_check.h"
+
+#include "shapes/shape.h"
+#include "transfers/velocity_transfer.h"
+
+#include <math.h>
+#include <stdio.h>
+
+/* A share of PIC is part of `flip`; the others are nothing but PIC. */
+static enum talus_status check_share(const struct talus_scene *scene, struct talus_error *error)
+{
+    const struct talus_solver_options *solver = &scene->solver;
+    const char *name = transfer_of(solver)->name;
+    if (solver->transfer_index == 0 || (!(solver->pic_rate > 0) && isnan(solver->flip_ratio)))
+        return TALUS_OK;
+    const bool ratio = !isnan(solver->flip_ratio);
+    return talus_error_set(error, TALUS_INVALID, "contradiction",
+                           ratio ? "/solver/flip_ratio" : "/solver/pic_rate",
+                           "'%s' belongs to the transfer \"flip\"; \"%s\" takes the nodes' "
+                           "velocity in every step",
+                           ratio ? "flip_ratio" : "pic_rate", name);
+}
+
+/* A wall that leaves the particles their normal velocity has none to give to PIC: the momentum that
+ * particles lose by taking the nodes' velocity would be nobody's. */
+static enum talus_status check_walls(const struct talus_scene *scene, struct talus_error *error)
+{
+    for (size_t index = 0; index < scene->boundary_count; index++) {
+        char pointer[64];
+        if (scene->boundaries[index].wall != TALUS_WALL_KEEP || !transfer_blends(&scene->solver))
+            continue;
+        (void)snprintf(pointer, sizeof pointer, "/boundaries/%zu/wall", index);
+        return talus_error_set(error, TALUS_INVALID, "contradiction", pointer,
+                               "\"keep\" leaves particles their velocity against the wall, and a "
+                               "share of PIC takes it from them: use \"stop\", or pure FLIP");
+    }
+    return TALUS_OK;
+}
+
+/* The slope of a particle that has just entered a cell is that of a node which carries hardly any
+ * mass, so the nodes' velocities come back whole: what keeps FLIP stable there is gone. */
+static enum talus_status check_affine(const struct talus_scene *scene, struct talus_error *error)
+{
+    const struct talus_solver_options *solver = &scene->solver;
+    const struct shape *shape = shape_table[solver->shape_index];
+    if (!transfer_of(solver)->affine || !shape->light_nodes || solver->allow_unstable)
+        return TALUS_OK;
+    return talus_error_set(error, TALUS_INVALID, "unstable", "/solver/transfer",
+                           "\"%s\" with the shape \"%s\" is unstable where a body's edge moves "
+                           "through cells: use a smoother shape such as \"bspline2\", or "
+                           "\"allow_unstable\": true",
+                           transfer_of(solver)->name, shape->name);
+}
+
+enum talus_status method_check(const struct talus_scene *scene, struct talus_error *error)
+{
+    enum talus_status status = check_share(scene, error);
+    if (status == TALUS_OK)
+        status = check_walls(scene, error);
+    if (status == TALUS_OK)
+        status = check_affine(scene, error);
+    return status;
+}
