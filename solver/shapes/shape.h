@@ -107,8 +107,8 @@ struct shape {
     /* Largest stable Courant number c dt / h with full cells, per stress ordering (index: enum
      * talus_stress_update); the smallest over the dimensions and particle arrangements known. */
     double courant_limit[TALUS_STRESS_UPDATE_COUNT];
-    /* G^2/N of a node has no bound: a particle that has just entered a cell pulls at nodes that carry
-     * hardly any mass. */
+    /* G^2/N of a node has no bound: a particle that has just entered a cell pulls at nodes that
+     * carry hardly any mass. */
     bool light_nodes;
     /* Cells beyond its own that a particle can reach, at most REACH_MAX (state/sparse_grid.h). */
     uint32_t reach;
