@@ -141,7 +141,6 @@ static void add_bodies(uint64_t *hash, const struct talus_scene *scene)
         add_reals(hash, body->stress, 6);
         add_tractions(hash, body);
         add_reals(hash, reals, sizeof reals / sizeof reals[0]);
-    add_reals(hash, &solver->flip_ratio, 1);
     }
 }
 
