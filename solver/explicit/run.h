@@ -200,8 +200,12 @@ struct run {
 
 static inline struct shape_context run_shape_context(struct run *run, double time_step)
 {
-    return shape_context_make(&run->grid.layout, &run->grid.nodes, run->grid.domain.cell,
-                              time_step);
+    struct shape_context context =
+        shape_context_make(&run->grid.layout, &run->grid.nodes, run->grid.domain.cell, time_step);
+    context.grid = &run->grid;
+    context.hybrid_scale = run->scene.solver.hybrid_scale;
+    context.hybrid_count = run->scene.solver.hybrid_count;
+    return context;
 }
 
 /* Particles take the nodes' increment before the nodes' new velocity is known; otherwise after. */

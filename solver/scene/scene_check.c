@@ -122,15 +122,25 @@ static void check_anti_locking(struct scene_reader *reader)
                       "nothing is fitted with control \"none\": name a control volume");
 }
 
-static void check_gimp_scaling(struct scene_reader *reader)
+/* A key of `solver` that only one shape knows. */
+static void check_shape_key(struct scene_reader *reader, const char *key, const char *shape,
+                            const char *why)
+{
+    struct scene_path parent = {.key = "solver"};
+    struct scene_path here = {.parent = &parent, .key = key};
+    if (strcmp(shape_table[reader->scene->solver.shape_index]->name, shape) != 0)
+        scene_mistake(reader, &here, "contradiction", NULL, NULL, "%s", why);
+}
+
+static void check_shape(struct scene_reader *reader)
 {
     const struct talus_solver_options *solver = &reader->scene->solver;
-    struct scene_path parent = {.key = "solver"};
-    struct scene_path here = {.parent = &parent, .key = "gimp_scaling"};
-    if (solver->gimp_scaling != TALUS_GIMP_VOLUME &&
-        strcmp(shape_table[solver->shape_index]->name, "gimp_scaled") != 0)
-        scene_mistake(reader, &here, "contradiction", NULL, NULL,
-                      "only the particles of shape \"gimp_scaled\" change their size");
+    if (solver->gimp_scaling != TALUS_GIMP_VOLUME)
+        check_shape_key(reader, "gimp_scaling", "gimp_scaled",
+                        "only the particles of shape \"gimp_scaled\" change their size");
+    if (solver->hybrid_scale != 0.75 || solver->hybrid_count != 8)
+        check_shape_key(reader, "cpdi_hybrid", "cpdi_hybrid",
+                        "only the shape \"cpdi_hybrid\" chooses where to take CPDI");
 }
 
 /* Two boxes in the same place make twice the material there. */
@@ -242,7 +252,7 @@ void scene_check(struct scene_reader *reader)
     if (!scene_issues_under(reader->issues, "/solver"))
         check_anti_locking(reader);
     if (!scene_issues_under(reader->issues, "/solver"))
-        check_gimp_scaling(reader);
+        check_shape(reader);
     if (reader->issues->count > 0)
         return;
     check_estimate(reader);

@@ -13,7 +13,7 @@ static const char *const shape_words[] = {
 #undef SHAPE
     NULL,
 };
-static const char *const shape_lacking[] = {"cpdi", "cpdi_hybrid", "quadratic", NULL};
+static const char *const shape_lacking[] = {"quadratic", NULL};
 static const char *const gimp_scaling_words[] = {"volume", "stretch", NULL};
 static const char *const transfer_words[] = {
 #define TRANSFER(symbol) #symbol,
@@ -71,6 +71,28 @@ static const struct scene_field settle_fields[] = {
      .maximum = INFINITY,
      .offset = AT(settle_damping),
      .meaning = "c: in that time velocities fall by exp(-c dt) a step"},
+    {.key = NULL},
+};
+
+static const struct scene_field hybrid_fields[] = {
+    {.key = "scale",
+     .kind = SCENE_NUMBER,
+     .unit = "1",
+     .minimum = 0.0,
+     .above_minimum = true,
+     .maximum = 2.0,
+     .default_value = 0.75,
+     .offset = AT(hybrid_scale),
+     .meaning = "of the domains, when a particle looks for cells at the edge of the material"},
+    {.key = "count",
+     .kind = SCENE_NUMBER,
+     .unit = "1",
+     .minimum = 0.0,
+     .maximum = 1000.0,
+     .default_value = 8,
+     .whole = true,
+     .offset = AT(hybrid_count),
+     .meaning = "cells with at most so many particles are at the edge"},
     {.key = NULL},
 };
 
@@ -157,6 +179,11 @@ const struct scene_field scene_solver_fields[] = {
      .offset = AT(gimp_scaling),
      .meaning = "what the size of particles follows with gimp_scaled: their volume (Andersen and "
                 "Andersen 2012, eq. 28), or their stretch along every axis"},
+    {.key = "cpdi_hybrid",
+     .kind = SCENE_OBJECT,
+     .unit = "1",
+     .fields = hybrid_fields,
+     .meaning = "where particles of cpdi_hybrid take CPDI (Mast 2013, sec. B.2.2)"},
     {.key = "transfer",
      .kind = SCENE_CHOICE,
      .unit = "1",

@@ -17,6 +17,8 @@
 #include <stdbool.h>
 #include <stddef.h>
 
+struct sparse_grid;
+
 /* What every kernel call needs; read-only. */
 struct shape_context {
     const struct particle_layout *particles;
@@ -24,6 +26,10 @@ struct shape_context {
     real inverse_cell[3];  /* [1/m] */
     real displacement[3];  /* time step / cell width: a velocity's way in a step [s/m] */
     real cell_ratio[3][3]; /* cell width of axis a / that of axis b; exactly 1 for equal cells */
+    /* Where a shape chooses by what is around a particle (shape_domain.chooses), else unset. */
+    const struct sparse_grid *grid;
+    double hybrid_scale; /* of the domains in the search */
+    double hybrid_count; /* cells with at most so many particles are at the edge */
 };
 
 static inline struct shape_context shape_context_make(const struct particle_layout *particles,
@@ -94,6 +100,7 @@ struct domain_findings {
 struct shape_domain {
     uint32_t (*component_count)(size_t axis_count);
     bool needs_gradient; /* particles must store PARTICLE_GRADIENT */
+    bool chooses;        /* resize also sets PARTICLE_CONVECTED, out of what is around */
     /* PARTICLE_DOMAIN of a particle of that size along the axes, in cell widths. */
     void (*initialise)(size_t axis_count, const double size[3], real *domain);
     /* Once the particles of a block have been strained, before they scatter at their new places;

@@ -87,6 +87,7 @@ void run_layout(const struct talus_scene *scene, struct particle_layout *layout)
     count[PARTICLE_TOTAL_STRAIN] = strain && !finite ? tensor : 0;
     const struct shape_domain *domain = shape_table[scene->solver.shape_index]->domain;
     count[PARTICLE_DOMAIN] = domain != NULL ? domain->component_count(axes) : 0;
+    count[PARTICLE_CONVECTED] = domain != NULL && domain->chooses;
     if (domain != NULL && domain->needs_gradient)
         count[PARTICLE_GRADIENT] = axes * axes;
     layout->has_body = scene->body_count > 1;

@@ -85,7 +85,10 @@ static const struct mistake mistakes[] = {
     {BASE_PLANE, "/solver/courant", "0", NULL, "range"},
     {BASE_PLANE, "/solver/courant", "1.5", NULL, "over_critical"},
     {BASE_PLANE, "/solver/allow_unstable", "1", NULL, "type"},
-    {BASE_PLANE, "/solver/shape", "\"cpdi\"", NULL, "unsupported"},
+    {BASE_PLANE, "/solver/shape", "\"quadratic\"", NULL, "unsupported"},
+    {BASE_PLANE, "/solver/cpdi_hybrid", "{\"scale\": 0}", "/solver/cpdi_hybrid/scale", "range"},
+    {BASE_PLANE, "/solver/cpdi_hybrid", "{\"count\": 4}", NULL, "contradiction"},
+    {BASE_PLANE, "/solver/cpdi_hybrid", "{\"count\": 2.5}", "/solver/cpdi_hybrid/count", "type"},
     {BASE_PLANE, "/solver/shape", "\"liner\"", NULL, "unknown_value"},
     {BASE_PLANE, "/solver/gimp_scaling", "\"F\"", NULL, "unknown_value"},
     {BASE_PLANE, "/solver/gimp_scaling", "\"stretch\"", NULL, "contradiction"},
@@ -462,7 +465,7 @@ static void all_mistakes_are_reported_at_once(void **state)
     struct fixture_result result;
     json_t *scene = fixture_scene(BASE_PLANE);
     fixture_change(scene, "/grid/cel", "1");
-    fixture_change(scene, "/solver/shape", "\"cpdi\"");
+    fixture_change(scene, "/solver/shape", "\"linera\"");
     fixture_change(scene, "/materials/soil/density", "-1");
     fixture_change(scene, "/bodies/0/velocity", "[1]");
     fixture_change(scene, "/boundaries/1/box/max", "[0, 0]");
