@@ -87,7 +87,7 @@ const struct shape shape_cpdi = {
     .reference = "Sadeghirad, Brannon and Burghardt 2011; Mast 2013, sec. 2.4.7",
     .summary = "hat functions averaged over domains that stretch and shear with their particles: "
                "for large deformation; two to ten times the cost of linear",
-    .courant_limit = {1.24, 0.49},
+    .courant_limit = {1.24, 0.49, 1.24},
     .reach = CPDI_REACH,
     .domain = &domain,
     .kernels = {&cpdi_kernels_1, &cpdi_kernels_2, &cpdi_kernels_3},
