@@ -68,8 +68,8 @@ struct talus_solver_options {
     size_t transfer_index; /* into the table of transfers (solver/transfers); 0: FLIP */
     double pic_rate;       /* FLIP: lambda [1/s]; 0: pure FLIP */
     double flip_ratio;     /* FLIP: share of FLIP per step, instead of pic_rate; NAN: not given */
-    double hybrid_scale; /* cpdi_hybrid: of the domains, in the search for the edge */
-    double hybrid_count; /* cpdi_hybrid: most particles of a cell at the edge */
+    double hybrid_scale;   /* cpdi_hybrid: of the domains, in the search for the edge */
+    double hybrid_count;   /* cpdi_hybrid: most particles of a cell at the edge */
     enum talus_stress_update stress_update;
     enum talus_strain strain;
     enum talus_anti_locking_control anti_locking;
