@@ -71,6 +71,9 @@ static enum talus_status move_record(struct run *run, const struct outbox_record
     if (target == BLOCK_NONE)
         return talus_error_set(error, TALUS_MEMORY, "memory", "", "out of memory at step %llu",
                                (unsigned long long)run->step);
+    /* What enters a new block scatters before run_find_walls comes to it. */
+    if (run->grid.reach > 0 && target >= run->marked_block_count)
+        run_find_folds(run, &run->grid.blocks[target]);
     const struct shape_context context = run_shape_context(run, run->time_step);
     run->kernels->scatter_one(&context, &run->grid.blocks[target], slot, entry->force_stress,
                               run->scatters);

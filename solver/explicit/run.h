@@ -227,6 +227,8 @@ double run_force_factor(const struct run *run);
 /* ---- wall_nodes.c ---- */
 /* Finds the walls of node blocks that are new, and which blocks touch them. 0, or -1. */
 int run_find_walls(struct run *run);
+/* Which sides of a block's cells are walls, for shapes that fold there. */
+void run_find_folds(const struct run *run, struct particle_block *block);
 /* Before a step: walls that move, or act in a part of the time only, are where the step needs them;
  * if that changes grid lines, the wall nodes are found again. Momentum stays in the books: nodes
  * carry none from step to step, and what a new wall node takes is a reaction. 0, or -1. */

@@ -40,8 +40,7 @@ static int append_wall_nodes(struct run *run, size_t block)
     return 0;
 }
 
-/* Which sides of its cells are walls. */
-static void find_folds(const struct run *run, struct particle_block *block)
+void run_find_folds(const struct run *run, struct particle_block *block)
 {
     memset(block->folds, 0, sizeof block->folds);
     for (int lane = 0; lane < LANE_COUNT; lane++) {
@@ -60,7 +59,7 @@ static void mark_block(struct run *run, struct particle_block *block)
     if (run->grid.reach > 0) {
         nodes = block->wide_nodes;
         count = (size_t)3 * window_row_count(domain->axis_count, run->grid.reach);
-        find_folds(run, block);
+        run_find_folds(run, block);
     }
     block->constrained = false;
     for (size_t index = 0; index < count; index++)

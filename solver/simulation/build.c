@@ -89,7 +89,7 @@ void run_layout(const struct talus_scene *scene, struct particle_layout *layout)
     count[PARTICLE_DOMAIN] = domain != NULL ? domain->component_count(axes) : 0;
     count[PARTICLE_CONVECTED] = domain != NULL && domain->chooses;
     if (domain != NULL && domain->needs_gradient)
-        count[PARTICLE_GRADIENT] = axes * axes;
+        count[PARTICLE_GRADIENT] = axes * axes + strains_across(scene);
     layout->has_body = scene->body_count > 1;
     particle_layout_finish(layout);
 }

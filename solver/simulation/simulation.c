@@ -91,12 +91,13 @@ static void set_domain(const struct run *run, const struct particle_seed *seed, 
 {
     const size_t axes = run->grid.domain.axis_count;
     const double *spacing = seed->spacing[seed->body[particle]];
+    const double section =
+        seed->volume[particle] / domain_circle(&run->grid.domain, seed->position[0][particle]);
     const bool aligned =
         spacing[0] > 0 && run->scene.bodies[seed->body[particle]].rotate_angle_deg == 0.0;
     double size[3] = {0};
     for (size_t axis = 0; axis < axes; axis++) {
-        const double edge =
-            aligned ? spacing[axis] : pow(seed->volume[particle], 1.0 / (double)axes);
+        const double edge = aligned ? spacing[axis] : pow(section, 1.0 / (double)axes);
         size[axis] = edge * run->grid.domain.inverse_cell[axis];
     }
     run->shape->domain->initialise(
