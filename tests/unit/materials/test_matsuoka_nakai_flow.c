@@ -190,9 +190,56 @@ static void test_flow_is_normal_to_the_potential(void **context)
     }
 }
 
+/* Batches of 3 and 4 components give what one of 6 gives with zeros in the others; and slots in
+ * reverse order the same bits, whoever shares a chunk with them. */
+static void test_components_and_places(void **context)
+{
+    (void)context;
+    enum { COUNT = 72 };
+    static const size_t component_counts[] = {3, 4, 6};
+    const struct setting settings[] = {{"density", 2000.0},      {"bulk_modulus", bulk},
+                                       {"shear_modulus", shear}, {"friction_angle", 35.0},
+                                       {"potential", 1.0},       {"dilation_angle", 12.0},
+                                       {"cohesion", 200.0}};
+    struct fixture fixture;
+    fixture_init(&fixture, "matsuoka_nakai", settings, LENGTH(settings));
+    for (size_t kind = 0; kind < LENGTH(component_counts); kind++) {
+        const size_t components = component_counts[kind];
+        struct slots few;
+        struct slots all;
+        uint64_t state = 5;
+        slots_init(&few, COUNT, components);
+        slots_init(&all, COUNT, SYM3_COMPONENTS);
+        for (size_t slot = 0; slot < COUNT; slot++) {
+            double size = slot % 3 == 0 ? 1e-7 : 1e-3;
+            for (size_t k = 0; k < components; k++) {
+                double strain = size * (random_value(&state) - (k < 3 ? 0.1 : 0.0));
+                few.batch.strain[k][slot] = all.batch.strain[k][COUNT - 1 - slot] = strain;
+            }
+        }
+        fixture.material->update_stress(fixture.constants, &few.batch);
+        fixture.material->update_stress(fixture.constants, &all.batch);
+        size_t flow_count = 0;
+        for (size_t slot = 0; slot < COUNT; slot++) {
+            flow_count += few.batch.plastic_strain[slot] > 0.0;
+            for (size_t k = 0; k < SYM3_COMPONENTS; k++) {
+                double value = k < components ? few.batch.stress[k][slot] : 0.0;
+                double other = all.batch.stress[k][COUNT - 1 - slot];
+                assert_true(components == SYM3_COMPONENTS ? value == other
+                                                          : fabs(value - other) < 1e-8);
+            }
+        }
+        assert_true(flow_count > COUNT / 3);
+        slots_release(&few);
+        slots_release(&all);
+    }
+    fixture_release(&fixture);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_components_and_places),
         cmocka_unit_test(test_flow_is_normal_to_the_potential),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
