@@ -182,6 +182,7 @@ struct run {
     double signal_speed;        /* largest c + |v| of particles, after the last step [m/s] */
     uint64_t materials_present; /* bit set: with particles, after the last step */
     double checked_speed;       /* when energy was last checked */
+    double least_mass;          /* of a particle at the start [kg] */
     double mass_cutoff;         /* nodes lighter than this carry no motion [kg] */
     double reference_density;   /* smallest of the scene, for contact areas [kg/m^3] */
     bool over_critical_warned, failed;

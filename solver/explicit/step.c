@@ -177,6 +177,8 @@ enum talus_status run_take_step(struct run *run, struct talus_error *error)
     stage_clock_lap(clock, STAGE_REBIN);
     if (status == TALUS_OK)
         status = health_check_step(run, &sums, error);
+    if (status == TALUS_OK)
+        status = health_check_lumping(run, error);
     stage_clock_lap(clock, STAGE_ENERGY_CHECK);
     if (status != TALUS_OK) {
         run->failed = true;
@@ -211,5 +213,5 @@ enum talus_status run_start(struct run *run, struct talus_error *error)
     run->audit.hoop_force = sums.hoop_force;
     run_choose_time_step(run);
     run_open_books(run);
-    return TALUS_OK;
+    return health_check_lumping(run, error);
 }

@@ -32,4 +32,9 @@ TALUS_MUST_CHECK enum talus_status health_check_deformation(const struct run *ru
 TALUS_MUST_CHECK enum talus_status health_check_step(struct run *run, const struct tile_sums *sums,
                                                      struct talus_error *error);
 
+/* Lumped masses of shape functions that are negative in places: TALUS_INVALID at the start,
+ * TALUS_UNSTABLE later, with the node and its mass. */
+TALUS_MUST_CHECK enum talus_status health_check_lumping(const struct run *run,
+                                                        struct talus_error *error);
+
 #endif

@@ -13,7 +13,6 @@ static const char *const shape_words[] = {
 #undef SHAPE
     NULL,
 };
-static const char *const shape_lacking[] = {"quadratic", NULL};
 static const char *const gimp_scaling_words[] = {"volume", "stretch", NULL};
 static const char *const transfer_words[] = {
 #define TRANSFER(symbol) #symbol,
@@ -168,7 +167,6 @@ const struct scene_field scene_solver_fields[] = {
      .kind = SCENE_CHOICE,
      .unit = "1",
      .choices = shape_words,
-     .lacking = shape_lacking,
      .storage = SCENE_STORE_SIZE,
      .offset = AT(shape_index),
      .meaning = "shape functions"},

@@ -22,6 +22,7 @@ TALUS_INLINE void bspline2_weights(lanes x, lanes half, lane_mask odd, lanes w[W
 #define WIDE_KERNELS bspline2_kernels
 #define WIDE_WEIGHTS bspline2_weights
 #define WIDE_USES_DOMAIN 0
+#define WIDE_FOLDS 1
 #define DIMENSION 1
 #include "shapes/wide_kernel.h"
 #undef DIMENSION

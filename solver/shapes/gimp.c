@@ -35,6 +35,7 @@ TALUS_INLINE void gimp_weights(lanes x, lanes half, lane_mask odd, lanes w[WIDE_
 #define WIDE_KERNELS gimp_kernels
 #define WIDE_WEIGHTS gimp_weights
 #define WIDE_USES_DOMAIN 1
+#define WIDE_FOLDS 1
 #define DIMENSION 1
 #include "shapes/wide_kernel.h"
 #undef DIMENSION

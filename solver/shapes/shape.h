@@ -119,7 +119,9 @@ struct shape {
     bool light_nodes;
     /* Cells beyond its own that a particle can reach, at most REACH_MAX (state/sparse_grid.h). */
     uint32_t reach;
-    const struct shape_domain *domain;      /* NULL: particles are points */
+    const struct shape_domain *domain; /* NULL: particles are points */
+    bool halves_cells; /* the solver's cells are half as wide as the scene's, two are an element */
+    bool may_lump_negative; /* weights are negative in places, and lumped masses can be */
     const struct shape_kernels *kernels[3]; /* per dimension: 1, 2, 3 axes */
 };
 

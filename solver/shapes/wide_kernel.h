@@ -12,7 +12,9 @@
  * cell width at the position x in -1/2..1/2 of the cell, of a particle with half its length `half`,
  * in cell widths; `odd`: upper cell of an element.
  *
- * WIDE_USES_DOMAIN: 1 if `half` is PARTICLE_DOMAIN, 0 if it is not used. */
+ * WIDE_USES_DOMAIN: 1 if `half` is PARTICLE_DOMAIN, 0 if it is not used.
+ *
+ * WIDE_FOLDS: 1 if the shape folds at walls, 0 if none of its supports lies across one. */
 #define WIDE_CONCAT_(a, b) a##_##b
 #define WIDE_CONCAT(a, b) WIDE_CONCAT_(a, b)
 #define LOCAL(name) WIDE_CONCAT(name, DIMENSION)

@@ -38,7 +38,7 @@ static void LOCAL(support_init)(const struct shape_context *context,
         }
         folds |= (unsigned)block->folds[2 * axis] | block->folds[2 * axis + 1];
     }
-    support->folded = folds != 0;
+    support->folded = WIDE_FOLDS && folds != 0;
 }
 
 /* Gives what belongs to a node behind a wall to the two before it as if the field went on linearly:

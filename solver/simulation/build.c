@@ -96,14 +96,16 @@ void run_layout(const struct talus_scene *scene, struct particle_layout *layout)
 
 static void build_domain(const struct talus_scene *scene, struct domain *domain)
 {
+    const bool halves = shape_table[scene->solver.shape_index]->halves_cells;
     domain->axis_count = scene->axis_count;
     domain->revolves = scene->dimension == TALUS_AXISYMMETRIC;
     for (size_t axis = 0; axis < 3; axis++) {
         const bool used = axis < scene->axis_count;
-        domain->cell[axis] = used ? scene->grid.cell[axis] : 1.0;
+        domain->cell[axis] = used ? (halves ? 0.5 : 1.0) * scene->grid.cell[axis] : 1.0;
         domain->inverse_cell[axis] = 1.0 / domain->cell[axis];
         domain->min[axis] = used ? scene->grid.min[axis] : 0.0;
-        domain->cell_count[axis] = used ? (int32_t)scene->grid.cell_count[axis] : 1;
+        domain->cell_count[axis] =
+            used ? (halves ? 2 : 1) * (int32_t)scene->grid.cell_count[axis] : 1;
     }
 }
 

@@ -20,7 +20,7 @@ struct checkpoint_header {
     uint64_t scene; /* fingerprint */
     uint32_t row_max, over_critical_warned;
     double time, time_step, critical_time_step, last_time_step, interval, duration;
-    double largest_speed, signal_speed, checked_speed, mass_cutoff;
+    double largest_speed, signal_speed, checked_speed, least_mass, mass_cutoff;
     uint64_t materials_present, fall_backs, fall_backs_worst, fall_back_warned;
     struct domain_findings domains;
     uint32_t capped_warned, stretched_warned;
@@ -71,6 +71,7 @@ static struct checkpoint_header make_header(const struct talus_simulation *simul
     header.capped_warned = run->capped_warned;
     header.stretched_warned = run->stretched_warned;
     header.checked_speed = run->checked_speed;
+    header.least_mass = run->least_mass;
     header.mass_cutoff = run->mass_cutoff;
     header.energy = run->energy;
     header.audit = run->audit;
@@ -318,6 +319,7 @@ static void restore_header(struct run *run, const struct checkpoint_header *head
     run->signal_speed = header->signal_speed;
     run->materials_present = header->materials_present;
     run->checked_speed = header->checked_speed;
+    run->least_mass = header->least_mass;
     run->mass_cutoff = header->mass_cutoff;
     run->energy = header->energy;
     run->audit = header->audit;

@@ -62,6 +62,8 @@ double simulation_memory_estimate(const struct run *run, size_t number, double p
     const double per_node_block = (double)run->grid.nodes.layout.component_count * sizeof(lanes) +
                                   sizeof *run->grid.nodes.place;
     const double axes = (double)run->scene.axis_count;
+    if (run->shape->halves_cells)
+        cells = fmin(cells * pow(2, axes), fmax(particles, cells));
     const double rows = cells > 0 ? particles / cells : 0;
     const double width = pow(fmax(cells, 1), 1 / axes);
     const double blocks = cells / lanes_of_block * (1 + lanes_of_block / width);

@@ -53,6 +53,27 @@ static enum talus_status check_affine(const struct talus_scene *scene, struct ta
                            transfer_of(solver)->name, shape->name);
 }
 
+/* Elements of two cells of the solver an axis: averages over its cells would change nothing, and
+ * functions that reproduce squares have no second moment, over which slopes are found. */
+static enum talus_status check_elements(const struct talus_scene *scene, struct talus_error *error)
+{
+    const struct talus_solver_options *solver = &scene->solver;
+    const struct shape *shape = shape_table[solver->shape_index];
+    if (!shape->halves_cells)
+        return TALUS_OK;
+    if (solver->anti_locking != TALUS_CONTROL_NONE)
+        return talus_error_set(error, TALUS_INVALID, "contradiction", "/solver/anti_locking",
+                               "shape \"%s\" works in half cells, over which averages would change "
+                               "nothing",
+                               shape->name);
+    if (transfer_of(solver)->affine)
+        return talus_error_set(error, TALUS_INVALID, "contradiction", "/solver/transfer",
+                               "\"%s\" finds slopes by second moments, which the weights of shape "
+                               "\"%s\" do not have",
+                               transfer_of(solver)->name, shape->name);
+    return TALUS_OK;
+}
+
 enum talus_status method_check(const struct talus_scene *scene, struct talus_error *error)
 {
     enum talus_status status = check_share(scene, error);
@@ -60,5 +81,7 @@ enum talus_status method_check(const struct talus_scene *scene, struct talus_err
         status = check_walls(scene, error);
     if (status == TALUS_OK)
         status = check_affine(scene, error);
+    if (status == TALUS_OK)
+        status = check_elements(scene, error);
     return status;
 }

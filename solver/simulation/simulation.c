@@ -167,6 +167,7 @@ static enum talus_status place_particles(struct run *run, struct talus_error *er
         least_mass = fmin(least_mass, seed.mass[particle]);
     }
     run->initial_particle_count = seed.count;
+    run->least_mass = least_mass;
     run->mass_cutoff = mass_cutoff(run->shape) * least_mass;
     seeding_release(&seed);
     return status;

@@ -81,6 +81,8 @@ static void test_a_ram_takes_a_block_along(void **state)
     (void)state;
     static const double velocity[2] = {2.0, 0};
     for (size_t shape = 0; shape < shape_count; shape++) {
+        if (shape_table[shape]->may_lump_negative)
+            continue; /* for small displacements only: test_quadratic.c */
         for (int order = 0; order < TALUS_STRESS_UPDATE_COUNT; order++) {
             struct simulation_fixture fixture;
             build(&fixture);

@@ -254,6 +254,8 @@ static void test_momentum_in_flight(void **state)
     static const int64_t count[3] = {24, 24, 24};
     static const double min[3] = {0.83, 0.97, 0.91}, max[3] = {1.23, 1.37, 1.31};
     for (size_t shape = 0; shape < shape_count; shape++) {
+        if (shape_table[shape]->may_lump_negative)
+            continue; /* for small displacements only: test_quadratic.c */
         for (size_t axes = 1; axes <= 3; axes++) {
             struct simulation_fixture fixture;
             simulation_fixture_init(&fixture, axes, 0.1, count);

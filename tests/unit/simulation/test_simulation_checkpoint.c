@@ -175,8 +175,11 @@ static void goes_on_bit_for_bit(size_t shape, enum talus_stress_update update)
 static void test_goes_on_bit_for_bit(void **state)
 {
     (void)state;
-    for (size_t shape = 0; shape < shape_count; shape++)
+    for (size_t shape = 0; shape < shape_count; shape++) {
+        if (shape_table[shape]->may_lump_negative)
+            continue; /* for small displacements only: test_quadratic.c */
         goes_on_bit_for_bit(shape, TALUS_STRESS_MODIFIED_LAST);
+    }
     goes_on_bit_for_bit(0, TALUS_STRESS_FIRST);
 }
 

@@ -58,6 +58,8 @@ static void test_one_and_two_threads_of_every_shape(void **state)
 {
     (void)state;
     for (size_t shape = 0; shape < shape_count; shape++) {
+        if (shape_table[shape]->may_lump_negative)
+            continue; /* for small displacements only: test_quadratic.c */
         for (size_t axes = 1; axes <= 3; axes++) {
             struct simulation_fixture fixture;
             build(&fixture, material_find("linear_elastic"), axes);
