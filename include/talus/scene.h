@@ -51,11 +51,22 @@ enum talus_stress_update {
 enum talus_gimp_scaling { TALUS_GIMP_VOLUME, TALUS_GIMP_STRETCH };
 enum talus_strain { TALUS_STRAIN_FINITE, TALUS_STRAIN_SMALL };
 enum talus_precision { TALUS_PRECISION_DOUBLE, TALUS_PRECISION_SINGLE };
-enum talus_anti_locking_control { TALUS_CONTROL_NONE, TALUS_CONTROL_CELL };
+enum talus_anti_locking_control {
+    TALUS_CONTROL_NONE,
+    TALUS_CONTROL_CELL,
+    TALUS_CONTROL_NODE,
+    TALUS_CONTROL_HYBRID /* volumetric part over nodes, deviatoric part over cells */
+};
 enum talus_anti_locking_field {
     TALUS_FIT_VOLUMETRIC,
     TALUS_FIT_FULL,
     TALUS_FIT_FULL_CONSTANT_VOLUME
+};
+/* Weights of fits over nodes: N in the sums and on the way back; on the way back only; nowhere. */
+enum talus_anti_locking_averaging {
+    TALUS_AVERAGING_WEIGHTED,
+    TALUS_AVERAGING_UNWEIGHTED_SUMS,
+    TALUS_AVERAGING_UNWEIGHTED
 };
 enum talus_anti_locking_apply { TALUS_APPLY_STRAIN_AND_STRESS, TALUS_APPLY_STRAIN };
 
@@ -75,6 +86,7 @@ struct talus_solver_options {
     enum talus_anti_locking_control anti_locking;
     enum talus_anti_locking_field anti_locking_field;
     enum talus_anti_locking_apply anti_locking_apply;
+    enum talus_anti_locking_averaging anti_locking_averaging;
     double viscous_damping;         /* C [-] of the viscous stress C rho h c tr(d) 1 */
     double local_damping;           /* [-] share of the out-of-balance force */
     double force_ramp;              /* [s]; 0: none */

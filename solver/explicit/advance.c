@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 #include "explicit/advance.h"
 
-#include "antilocking/anti_locking.h"
+#include "explicit/anti_locking_stage.h"
 #include "explicit/kinematics.h"
 #include "explicit/material_stage.h"
 #include "explicit/out_of_plane.h"
@@ -69,7 +69,7 @@ static void source_init(const struct run *run, const struct particle_block *bloc
 
 /* Bulk viscosity of the damping: sigma = C rho h c_b tr d on the diagonal, in the nodal forces only
  * (Mast 2013, sec. B.2.3 names the option without its formula; this is the usual linear one). */
-static void damp_bulk(const struct run *run, const struct particle_block *block,
+static void damp_bulk(struct run *run, const struct particle_block *block,
                       struct block_scratch *scratch, size_t count, struct scatter_source *source,
                       struct tile_sums *sums)
 {
@@ -77,10 +77,7 @@ static void damp_bulk(const struct run *run, const struct particle_block *block,
         run->scene.solver.viscous_damping * domain_smallest_cell(&run->grid.domain);
     real *divergence = scratch->mean;
     double viscous = 0;
-    for (size_t slot = 0; slot < count; slot++)
-        divergence[slot] = scratch->rate[0][slot] + scratch->rate[1][slot] + scratch->rate[2][slot];
-    if (run->scene.solver.anti_locking == TALUS_CONTROL_CELL)
-        cell_average(count, source->mass, divergence);
+    anti_locking_divergence(run, block, scratch, divergence);
     for (size_t slot = 0; slot < count; slot++) {
         const struct run_material *material = &run->materials[material_of_slot(run, block, slot)];
         const real viscosity = (real)(strength * material->density * material->bulk_speed);
@@ -279,7 +276,7 @@ static void carry(struct run *run, struct block_scratch *scratch, uint32_t block
 }
 
 /* The stress in scratch as the nodes feel it: with bulk damping. */
-static void damped_source(const struct run *run, const struct particle_block *block,
+static void damped_source(struct run *run, const struct particle_block *block,
                           struct block_scratch *scratch, struct tile_sums *sums,
                           struct scatter_source *source)
 {

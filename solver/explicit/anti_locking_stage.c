@@ -2,30 +2,26 @@
 #include "explicit/anti_locking_stage.h"
 
 #include "antilocking/anti_locking.h"
+#include "explicit/kinematics.h"
+#include "explicit/material_stage.h"
 #include "math/log1p_series.h"
 
 #include <assert.h>
+#include <string.h>
 
-/* Normal components that are fitted: in plane stress zz follows from those in the plane. */
-static size_t normal_count(const struct run *run)
+TALUS_INLINE lanes trace_at(size_t normals, real *const tensor[6], size_t slot)
 {
-    return run->scene.dimension == TALUS_PLANE_STRESS ? 2 : 3;
-}
-
-/* `normals` is a constant where these are inlined. */
-TALUS_INLINE lanes trace_at(real *const tensor[6], size_t slot, size_t normals)
-{
-    const lanes plane = lanes_load(tensor[0] + slot) + lanes_load(tensor[1] + slot);
-    return normals == 2 ? plane : plane + lanes_load(tensor[2] + slot);
+    const lanes sum = lanes_load(tensor[0] + slot) + lanes_load(tensor[1] + slot);
+    return normals == 2 ? sum : sum + lanes_load(tensor[2] + slot);
 }
 
 /* Mean trace of each cell. */
-TALUS_INLINE lanes mean_trace(size_t count, const real *weight, real *const tensor[6],
-                              size_t normals)
+TALUS_INLINE lanes mean_trace(size_t normals, size_t count, const real *weight,
+                              real *const tensor[6])
 {
     lanes total = {0}, sum = {0};
     for (size_t slot = 0; slot < count; slot += LANE_COUNT) {
-        const lanes trace = trace_at(tensor, slot, normals);
+        const lanes trace = trace_at(normals, tensor, slot);
         const lanes w = lanes_load(weight + slot);
         total += w;
         sum += w * trace;
@@ -33,33 +29,46 @@ TALUS_INLINE lanes mean_trace(size_t count, const real *weight, real *const tens
     return sum / lanes_select(total > 0, total, lanes_splat(1));
 }
 
-/* For each normal component, what brings the trace of a row to the mean; 0 where the slot takes no
- * part. */
-TALUS_INLINE lanes shift_at(const real *weight, real *const tensor[6], size_t slot, lanes mean,
-                            size_t normals)
+/* Share of each normal component in what brings the trace of a row to its target: that of the slot,
+ * or the mean of the cell; 0 where the slot takes no part. */
+TALUS_INLINE lanes shift_at(size_t normals, const real *weight, real *const tensor[6], size_t slot,
+                            lanes mean, const real *target)
 {
-    const real part = normals == 2 ? (real)0.5 : (real)(1.0 / 3.0);
+    const lanes wanted = target == NULL ? mean : lanes_load(target + slot);
     return lanes_keep(lanes_load(weight + slot) > 0,
-                      part * (mean - trace_at(tensor, slot, normals)));
+                      (real)(1.0 / (double)normals) * (wanted - trace_at(normals, tensor, slot)));
 }
 
-/* Brings the trace of the logarithmic strain to the mean of the cell, and the stored form with it:
- * b <- exp(2 shift) b, e <- e + s e + s/2; in plane stress the stored zz is never read.
- * `components` is a constant where this is inlined; stretch [count] is free. */
-TALUS_INLINE void shift_finite(size_t count, size_t components, size_t normals, const real *weight,
-                               real *const strain[6], real *const stored[6], real *stretch)
+/* Adds the shifts to the normal components; factor x shift into shifts[count] if that is given. */
+TALUS_INLINE void shift_trace(size_t normals, size_t count, const real *weight,
+                              real *const tensor[6], const real *target, real factor, real *shifts)
 {
-    const lanes mean = mean_trace(count, weight, strain, normals);
+    lanes mean = {0};
+    if (target == NULL)
+        mean = mean_trace(normals, count, weight, tensor);
     for (size_t slot = 0; slot < count; slot += LANE_COUNT) {
-        const lanes shift = shift_at(weight, strain, slot, mean, normals);
-        lanes_store(stretch + slot, 2 * shift);
+        const lanes shift = shift_at(normals, weight, tensor, slot, mean, target);
+        if (shifts != NULL)
+            lanes_store(shifts + slot, factor * shift);
         for (size_t component = 0; component < normals; component++)
-            lanes_store(strain[component] + slot, lanes_load(strain[component] + slot) + shift);
+            lanes_store(tensor[component] + slot, lanes_load(tensor[component] + slot) + shift);
     }
+}
+
+/* Brings the trace of the logarithmic strain to its target, and the stored form with it:
+ * b <- exp(2 shift) b, e <- e + s e + s/2; with two normal components in their plane only.
+ * `normals` and `components` are constants where this is inlined; stretch [count] is free. */
+TALUS_INLINE void shift_finite(size_t normals, size_t count, size_t components, const real *weight,
+                               real *const strain[6], real *const stored[6], const real *target,
+                               real *stretch)
+{
+    shift_trace(normals, count, weight, strain, target, 2, stretch);
     expm1_array(count, stretch, stretch);
     for (size_t slot = 0; slot < count; slot += LANE_COUNT) {
         const lanes s = lanes_load(stretch + slot);
         for (size_t component = 0; component < components; component++) {
+            if (component == 2 && normals == 2)
+                continue;
             const lanes e = lanes_load(stored[component] + slot);
             const lanes half = lanes_splat(component < 3 ? (real)0.5 : 0);
             lanes_store(stored[component] + slot, e + s * (e + half));
@@ -67,72 +76,56 @@ TALUS_INLINE void shift_finite(size_t count, size_t components, size_t normals, 
     }
 }
 
-TALUS_INLINE void shift_small(size_t count, size_t normals, const real *weight,
-                              real *const strain[6], real *const stored[6])
+static void shift_small(size_t normals, size_t count, const real *weight, real *const strain[6],
+                        real *const stored[6], const real *target, real *shifts)
 {
-    const lanes mean = mean_trace(count, weight, strain, normals);
+    if (normals == 2)
+        shift_trace(2, count, weight, strain, target, 1, shifts);
+    else
+        shift_trace(3, count, weight, strain, target, 1, shifts);
     for (size_t slot = 0; slot < count; slot += LANE_COUNT) {
-        const lanes shift = shift_at(weight, strain, slot, mean, normals);
-        for (size_t component = 0; component < normals; component++) {
-            lanes_store(strain[component] + slot, lanes_load(strain[component] + slot) + shift);
-            lanes_store(stored[component] + slot, lanes_load(stored[component] + slot) + shift);
-        }
+        for (size_t component = 0; component < normals; component++)
+            lanes_store(stored[component] + slot,
+                        lanes_load(stored[component] + slot) + lanes_load(shifts + slot));
     }
 }
 
+/* Brings the trace of the strains, and of their stored form, to the target, or the cell's mean. */
 static void shift_strain(const struct run *run, const struct particle_block *block,
-                         struct block_scratch *scratch, size_t count, const real *weight)
+                         struct block_scratch *scratch, const struct anti_locking *fit,
+                         const real *target)
 {
     real *stored[6] = {NULL};
+    real *const *strain = scratch->strain;
+    const size_t count = fit->count;
     assert(run->strain_components >= 3 && run->strain_components <= 6);
     for (uint32_t component = 0; component < run->strain_components; component++)
         stored[component] = particle_values(&run->grid.layout, block, PARTICLE_STRAIN, component);
-    if (normal_count(run) == 2 && !run->finite_strain)
-        shift_small(count, 2, weight, scratch->strain, stored);
-    else if (normal_count(run) == 2)
-        shift_finite(count, 4, 2, weight, scratch->strain, stored, scratch->mean);
-    else if (!run->finite_strain)
-        shift_small(count, 3, weight, scratch->strain, stored);
+    if (!run->finite_strain)
+        shift_small(run->normal_components, count, fit->weight, strain, stored, target,
+                    scratch->mean);
     else if (run->strain_components == 6)
-        shift_finite(count, 6, 3, weight, scratch->strain, stored, scratch->mean);
-    else if (run->strain_components == 4)
-        shift_finite(count, 4, 3, weight, scratch->strain, stored, scratch->mean);
+        shift_finite(3, count, 6, fit->weight, strain, stored, target, scratch->mean);
+    else if (run->strain_components == 3)
+        shift_finite(3, count, 3, fit->weight, strain, stored, target, scratch->mean);
+    else if (run->normal_components == 3)
+        shift_finite(3, count, 4, fit->weight, strain, stored, target, scratch->mean);
     else
-        shift_finite(count, 3, 3, weight, scratch->strain, stored, scratch->mean);
+        shift_finite(2, count, 4, fit->weight, strain, stored, target, scratch->mean);
 }
 
-/* Replaces the volumetric trial strain by its cell average: strain and stored form. */
-static void average_trace(const struct run *run, const struct particle_block *block,
-                          const struct anti_locking *fit, struct block_scratch *scratch)
+/* values <- source where the slots take part. */
+static void replace(const struct anti_locking *fit, const real *source, real *values)
 {
-    if (fit->model->volumetric)
-        cell_average(fit->count, fit->weight, scratch->strain[0]);
-    else
-        shift_strain(run, block, scratch, fit->count, fit->weight);
-}
-
-/* The strain of volumetric materials is stored as it is. */
-static void store_volumetric(const struct run *run, const struct particle_block *block,
-                             const struct anti_locking *fit, const real *strain)
-{
-    real *stored = particle_values(&run->grid.layout, block, PARTICLE_STRAIN, 0);
     for (size_t slot = 0; slot < fit->count; slot += LANE_COUNT)
-        lanes_store(stored + slot,
-                    lanes_select(lanes_load(fit->weight + slot) > 0, lanes_load(strain + slot),
-                                 lanes_load(stored + slot)));
+        lanes_store(values + slot,
+                    lanes_select(lanes_load(fit->weight + slot) > 0, lanes_load(source + slot),
+                                 lanes_load(values + slot)));
 }
 
-/* Replaces the mean stress by its cell average. */
-TALUS_INLINE void average_stress(struct block_scratch *scratch, size_t count, size_t normals,
-                                 const real *weight)
+static bool takes_nodes(const struct run *run)
 {
-    const lanes mean = mean_trace(count, weight, scratch->stress, normals);
-    for (size_t slot = 0; slot < count; slot += LANE_COUNT) {
-        const lanes shift = shift_at(weight, scratch->stress, slot, mean, normals);
-        for (size_t component = 0; component < normals; component++)
-            lanes_store(scratch->stress[component] + slot,
-                        lanes_load(scratch->stress[component] + slot) + shift);
-    }
+    return run->node_fit.active;
 }
 
 static bool constant_trace(const struct run *run)
@@ -140,16 +133,43 @@ static bool constant_trace(const struct run *run)
     return run->scene.solver.anti_locking_field == TALUS_FIT_FULL_CONSTANT_VOLUME;
 }
 
-void anti_locking_begin(const struct run *run, const struct particle_block *block,
-                        const struct material *model, const real *weight, struct anti_locking *fit)
+static bool fits_stress(const struct run *run)
+{
+    return run->scene.solver.anti_locking != TALUS_CONTROL_NONE &&
+           run->scene.solver.anti_locking_apply == TALUS_APPLY_STRAIN_AND_STRESS;
+}
+
+/* All components over cells; with `trace` given from the nodes. */
+static void fit_over_cells(const struct run *run, const struct anti_locking *fit, const real *trace,
+                           real *const tensor[6])
+{
+    cell_fit_tensor(&fit->cells, run->strain_components, run->normal_components,
+                    constant_trace(run), trace, tensor);
+}
+
+/* All components from the nodes; zz stays in plane stress. */
+static void take_components(const struct run *run, const struct anti_locking *fit,
+                            real *const source[6], real *const tensor[6])
+{
+    for (size_t component = 0; component < run->strain_components; component++) {
+        if (component < run->normal_components || component > 2)
+            replace(fit, source[component], tensor[component]);
+    }
+}
+
+void anti_locking_begin(const struct run *run, const struct particle_block *block, size_t material,
+                        const real *weight, struct anti_locking *fit)
 {
     const struct talus_solver_options *solver = &run->scene.solver;
-    *fit = (struct anti_locking){.model = model,
+    const bool cells =
+        solver->anti_locking == TALUS_CONTROL_CELL || solver->anti_locking == TALUS_CONTROL_HYBRID;
+    *fit = (struct anti_locking){.model = run->materials[material].model,
+                                 .material = material,
                                  .weight = weight,
                                  .count = (size_t)block->row_count * LANE_COUNT,
-                                 .whole = solver->anti_locking != TALUS_CONTROL_NONE &&
-                                          solver->anti_locking_field != TALUS_FIT_VOLUMETRIC};
-    if (!fit->whole)
+                                 .fits_cells =
+                                     cells && solver->anti_locking_field != TALUS_FIT_VOLUMETRIC};
+    if (!fit->fits_cells)
         return;
     const real *position[3] = {NULL};
     const size_t axes = run->grid.domain.axis_count;
@@ -159,37 +179,172 @@ void anti_locking_begin(const struct run *run, const struct particle_block *bloc
     cell_fit_init(&fit->cells, fit->count, axes, weight, position);
 }
 
-bool anti_locking_strain(const struct run *run, const struct particle_block *block,
-                         const struct anti_locking *fit, struct block_scratch *scratch)
+/* scratch->fit <- values from the nodes. */
+static void gather(struct run *run, const struct particle_block *block,
+                   const struct anti_locking *fit, enum node_fit_what what,
+                   struct block_scratch *scratch)
 {
-    if (run->scene.solver.anti_locking == TALUS_CONTROL_NONE)
-        return false;
-    if (!fit->whole)
-        average_trace(run, block, fit, scratch);
-    else if (!fit->model->volumetric)
-        cell_fit_tensor(&fit->cells, run->strain_components, normal_count(run), constant_trace(run),
-                        NULL, scratch->strain);
-    else if (constant_trace(run))
-        cell_average(fit->count, fit->weight, scratch->strain[0]);
-    else
-        cell_fit_scalar(&fit->cells, scratch->strain[0]);
-    if (fit->model->volumetric)
-        store_volumetric(run, block, fit, scratch->strain[0]);
-    return fit->whole && !fit->model->volumetric;
+    const struct shape_context context = run_shape_context(run, run->time_step);
+    const struct node_fit_block at = {.context = &context, .kernels = run->kernels, .block = block};
+    node_fit_gather(&run->node_fit, &at, fit->material, what, scratch->fit);
 }
 
-void anti_locking_stress(const struct run *run, const struct anti_locking *fit,
-                         struct block_scratch *scratch)
+/* ln J of fluids: out of all that is fitted only the trace. */
+static void fit_volumetric_strain(const struct run *run, const struct particle_block *block,
+                                  const struct anti_locking *fit, struct block_scratch *scratch)
 {
-    const struct talus_solver_options *solver = &run->scene.solver;
-    if (solver->anti_locking == TALUS_CONTROL_NONE ||
-        solver->anti_locking_apply != TALUS_APPLY_STRAIN_AND_STRESS)
-        return;
-    if (fit->whole)
-        cell_fit_tensor(&fit->cells, run->strain_components, normal_count(run), constant_trace(run),
-                        NULL, scratch->stress);
-    else if (normal_count(run) == 2)
-        average_stress(scratch, fit->count, 2, fit->weight);
+    real *strain = scratch->strain[0];
+    if (takes_nodes(run)) {
+        real *trace = scratch->fit[0];
+        for (size_t slot = 0; !run->node_fit.trace_only && slot < fit->count; slot += LANE_COUNT)
+            lanes_store(trace + slot, trace_at(run->normal_components, scratch->fit, slot));
+        replace(fit, trace, strain);
+    } else if (fit->fits_cells && !constant_trace(run)) {
+        cell_fit_scalar(&fit->cells, strain);
+    } else {
+        cell_average(fit->count, fit->weight, strain);
+    }
+    replace(fit, strain, particle_values(&run->grid.layout, block, PARTICLE_STRAIN, 0));
+}
+
+bool anti_locking_strain(struct run *run, const struct particle_block *block,
+                         const struct anti_locking *fit, struct block_scratch *scratch)
+{
+    const real *trace = NULL;
+    if (run->scene.solver.anti_locking == TALUS_CONTROL_NONE)
+        return false;
+    if (takes_nodes(run)) {
+        gather(run, block, fit, NODE_FIT_STRAIN, scratch);
+        trace = scratch->fit[0];
+    }
+    if (fit->model->volumetric) {
+        fit_volumetric_strain(run, block, fit, scratch);
+        return false;
+    }
+    if (takes_nodes(run) && !run->node_fit.trace_only)
+        take_components(run, fit, scratch->fit, scratch->strain);
+    else if (fit->fits_cells)
+        fit_over_cells(run, fit, trace, scratch->strain);
     else
-        average_stress(scratch, fit->count, 3, fit->weight);
+        shift_strain(run, block, scratch, fit, trace);
+    return fit->fits_cells || (takes_nodes(run) && !run->node_fit.trace_only);
+}
+
+/* Brings the trace of the stress to the target, or the cell's mean. */
+static void shift_stress(const struct run *run, const struct anti_locking *fit, const real *target,
+                         real *const stress[6])
+{
+    if (run->normal_components == 3)
+        shift_trace(3, fit->count, fit->weight, stress, target, 1, NULL);
+    else
+        shift_trace(2, fit->count, fit->weight, stress, target, 1, NULL);
+}
+
+/* What is fitted over nodes of a tensor: its trace, or all of it. */
+static real *const *quantities_of(const struct run *run, struct block_scratch *scratch,
+                                  size_t count, real *const tensor[6])
+{
+    if (!run->node_fit.trace_only)
+        return tensor;
+    for (size_t slot = 0; slot < count; slot += LANE_COUNT)
+        lanes_store(scratch->fit[0] + slot, trace_at(run->normal_components, tensor, slot));
+    return scratch->fit;
+}
+
+static struct node_fit_block make_block(const struct run *run, const struct particle_block *block,
+                                        const struct shape_context *context,
+                                        struct block_scratch *scratch)
+{
+    struct node_fit_block at = {
+        .context = context, .kernels = run->kernels, .block = block, .product = scratch->product};
+    memcpy(at.coordinate, scratch->coordinate, sizeof at.coordinate);
+    node_fit_locate(&run->node_fit, &at);
+    return at;
+}
+
+void anti_locking_stress(struct run *run, const struct particle_block *block,
+                         const struct anti_locking *fit, struct block_scratch *scratch)
+{
+    if (!fits_stress(run))
+        return;
+    if (takes_nodes(run)) {
+        const struct shape_context context = run_shape_context(run, run->time_step);
+        const struct node_fit_block at = make_block(run, block, &context, scratch);
+        node_fit_scatter(&run->node_fit, &at, fit->material, NODE_FIT_STRESS, fit->weight,
+                         quantities_of(run, scratch, fit->count, scratch->stress));
+    } else if (fit->fits_cells) {
+        fit_over_cells(run, fit, NULL, scratch->stress);
+    } else {
+        shift_stress(run, fit, NULL, scratch->stress);
+    }
+}
+
+void anti_locking_gather_stress(struct run *run, const struct particle_block *block,
+                                struct block_scratch *scratch)
+{
+    const uint64_t present = scratch->materials;
+    for (size_t material = 0; material < run->scene.material_count; material++) {
+        if ((present >> material & 1) == 0)
+            continue;
+        struct anti_locking fit;
+        anti_locking_begin(run, block, material,
+                           material_stage_weights(run, block, scratch, material, present), &fit);
+        gather(run, block, &fit, NODE_FIT_STRESS, scratch);
+        if (!run->node_fit.trace_only)
+            take_components(run, &fit, scratch->fit, scratch->stress);
+        else if (fit.fits_cells)
+            fit_over_cells(run, &fit, scratch->fit[0], scratch->stress);
+        else
+            shift_stress(run, &fit, scratch->fit[0], scratch->stress);
+    }
+}
+
+static void sum_rates(const struct block_scratch *scratch, size_t count, real *divergence)
+{
+    for (size_t slot = 0; slot < count; slot++)
+        divergence[slot] = scratch->rate[0][slot] + scratch->rate[1][slot] + scratch->rate[2][slot];
+}
+
+void anti_locking_scatter_strain(struct run *run, const struct particle_block *block,
+                                 struct block_scratch *scratch)
+{
+    const size_t count = (size_t)block->row_count * LANE_COUNT;
+    const uint64_t present = material_stage_present(run, block);
+    const struct shape_context context = run_shape_context(run, run->time_step);
+    const struct node_fit_block at = make_block(run, block, &context, scratch);
+    real *const *quantities = scratch->strain;
+    if (run->node_fit.trace_only) {
+        kinematics_traces(run, block, scratch->fit[0]);
+        quantities = scratch->fit;
+    }
+    for (size_t material = 0; material < run->scene.material_count; material++) {
+        if ((present >> material & 1) == 0)
+            continue;
+        const real *weight = material_stage_weights(run, block, scratch, material, present);
+        node_fit_scatter_masses(&run->node_fit, &at, material, weight);
+        node_fit_scatter(&run->node_fit, &at, material, NODE_FIT_STRAIN, weight, quantities);
+    }
+    if (!(run->scene.solver.viscous_damping > 0))
+        return;
+    sum_rates(scratch, count, scratch->mean);
+    node_fit_scatter_divergence(&run->node_fit, &at,
+                                particle_values(&run->grid.layout, block, PARTICLE_MASS, 0),
+                                scratch->mean);
+}
+
+void anti_locking_divergence(struct run *run, const struct particle_block *block,
+                             struct block_scratch *scratch, real *divergence)
+{
+    const size_t count = (size_t)block->row_count * LANE_COUNT;
+    if (takes_nodes(run)) {
+        const struct shape_context context = run_shape_context(run, run->time_step);
+        const struct node_fit_block at = {
+            .context = &context, .kernels = run->kernels, .block = block};
+        node_fit_gather_divergence(&run->node_fit, &at, divergence);
+        return;
+    }
+    sum_rates(scratch, count, divergence);
+    if (run->scene.solver.anti_locking == TALUS_CONTROL_CELL)
+        cell_average(count, particle_values(&run->grid.layout, block, PARTICLE_MASS, 0),
+                     divergence);
 }

@@ -26,12 +26,11 @@ static bool is_single(uint64_t set)
     return (set & (set - 1)) == 0;
 }
 
-/* weight[slot] = mass where the slot belongs to the material, else 0. */
-static const real *weights_of(const struct run *run, const struct particle_block *block,
-                              struct block_scratch *scratch, size_t material, bool single)
+const real *material_stage_weights(const struct run *run, const struct particle_block *block,
+                                   struct block_scratch *scratch, size_t material, uint64_t present)
 {
     const real *mass = particle_values(&run->grid.layout, block, PARTICLE_MASS, 0);
-    if (single)
+    if (is_single(present))
         return mass;
     const size_t count = (size_t)block->row_count * LANE_COUNT;
     for (size_t slot = 0; slot < count; slot++)
@@ -185,9 +184,10 @@ struct material_outcome material_stage_run(struct run *run, const struct particl
         if ((present >> material & 1) == 0)
             continue;
         const struct material *model = run->materials[material].model;
-        const real *weight = smooths ? weights_of(run, block, scratch, material, single) : NULL;
+        const real *weight =
+            smooths ? material_stage_weights(run, block, scratch, material, present) : NULL;
         struct anti_locking fit;
-        anti_locking_begin(run, block, model, weight, &fit);
+        anti_locking_begin(run, block, material, weight, &fit);
         const bool refitted = anti_locking_strain(run, block, &fit, scratch);
         outcome.refitted = outcome.refitted || refitted;
         outcome.fall_backs += fit.cells.fall_backs;
@@ -199,7 +199,7 @@ struct material_outcome material_stage_run(struct run *run, const struct particl
         outcome.flowed = outcome.flowed || flowed;
         outcome.dissipated = outcome.dissipated || flowed || (model->dissipates && !model->plastic);
         stage_clock_lap(scratch->clock, STAGE_MATERIAL);
-        anti_locking_stress(run, &fit, scratch);
+        anti_locking_stress(run, block, &fit, scratch);
         stage_clock_lap(scratch->clock, STAGE_ANTI_LOCKING);
     }
     if (run->scene.dimension == TALUS_PLANE_STRESS) /* exactly, not up to rounding */

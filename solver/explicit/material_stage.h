@@ -15,6 +15,10 @@ struct material_outcome {
 
 /* Bit set of the materials with particles in a block. */
 uint64_t material_stage_present(const struct run *run, const struct particle_block *block);
+/* Mass of the slots of a material, else 0; `present` as above. Valid until the next call. */
+const real *material_stage_weights(const struct run *run, const struct particle_block *block,
+                                   struct block_scratch *scratch, size_t material,
+                                   uint64_t present);
 
 /* Reads the kinematics in scratch; writes strain, stress, plastic_strain, dissipation, the history
  * of the particles, and the averaged volumetric parts into the stored strain. */

@@ -9,6 +9,10 @@
 /* What a pass does with one tile, with the scratch of the thread. */
 typedef void pass_tile(struct run *run, size_t tile_index, struct block_scratch *scratch);
 
+/* Fetches the particles of the block two ahead while the one at `entry` is worked on. */
+void tile_look_ahead(const struct run *run, size_t entry, struct block_scratch *scratch);
+/* Zero but for what is compared. */
+void tile_sums_clear(struct tile_sums *sums);
 void run_pass(struct run *run, pass_tile *pass);
 
 /* v_p += sum N dv_i; P_i = sum N m_p v_p. */

@@ -18,6 +18,7 @@
 #ifndef TALUS_RUN_H
 #define TALUS_RUN_H
 
+#include "antilocking/node_fit.h"
 #include "boundaries/boundary.h"
 #include "materials/material.h"
 #include "shapes/shape.h"
@@ -140,11 +141,16 @@ struct run {
     bool any_rate;            /* a material or the damping wants d */
     bool strains_across;      /* a plane body with strain along zz (out_of_plane.h) */
     size_t strain_components; /* that the materials see: 3, 4 or 6 */
+    size_t normal_components; /* that anti-locking fits: 3, in plane stress 2 */
     size_t
         stored_components; /* of PARTICLE_STRAIN: the same, or 1 if all materials are volumetric */
 
-    double gravity[3];     /* uniform, in this step, without the ramp [m/s^2] */
-    bool gravity_deviates; /* from that of the scene, which the potential energy knows */
+    double gravity[3];        /* uniform, in this step, without the ramp [m/s^2] */
+    bool gravity_deviates;    /* from that of the scene, which the potential energy knows */
+    struct node_fit node_fit; /* of anti-locking */
+    bool reloads_gradient;    /* a material wants d or the spin; for passes that are split */
+    bool shows_stress;        /* frames or probes want it */
+
     struct run_callbacks callbacks;
     struct particle_force forces[PARTICLE_FORCE_MAX];
     size_t force_count;
@@ -301,6 +307,11 @@ double run_critical_time_step(const struct run *run, double signal_speed, uint64
 void run_note_speed(const struct run *run, uint64_t materials, double speed_squared,
                     struct tile_sums *sums);
 void run_choose_time_step(struct run *run);
+
+/* ---- split_passes.c ---- */
+/* What advance_tile (`still`: start_tile) does for all tiles, in passes of their own with fits over
+ * nodes between strain and stress, and between stress and forces. */
+void run_split_advance(struct run *run, bool still);
 
 /* ---- step.c ---- */
 TALUS_MUST_CHECK enum talus_status run_take_step(struct run *run, struct talus_error *error);

@@ -101,12 +101,18 @@ static void take_passes(struct run *run, struct stage_clock *clock)
     } else if (first) {
         run_start_nodes(run);
         stage_clock_lap(clock, STAGE_KICK_NODES);
-        run_pass(run, stress_tile);
+        if (run->node_fit.active)
+            run_split_advance(run, false);
+        else
+            run_pass(run, stress_tile);
         run->audit.hoop_force = sum_tiles(run).hoop_force;
     }
     run_update_nodes(run);
     stage_clock_lap(clock, STAGE_UPDATE_NODES);
-    run_pass(run, first ? move_tile : advance_tile);
+    if (run->node_fit.active && !first)
+        run_split_advance(run, false);
+    else
+        run_pass(run, first ? move_tile : advance_tile);
 }
 
 /* What the last step left at the nodes, once more. */
@@ -202,7 +208,10 @@ enum talus_status run_start(struct run *run, struct talus_error *error)
         run_reserve_scratch(run) != 0)
         return talus_error_set(error, TALUS_MEMORY, "memory", "", "out of memory at the start");
     partition_outbox(run);
-    run_pass(run, start_tile);
+    if (run->node_fit.active)
+        run_split_advance(run, true);
+    else
+        run_pass(run, start_tile);
     if (run->grid.layout.component_count[PARTICLE_AFFINE] > 0)
         run_start_affine(run);
     const struct tile_sums sums = sum_tiles(run);

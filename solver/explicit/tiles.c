@@ -49,8 +49,7 @@ void kick_tile(struct run *run, size_t index, struct block_scratch *scratch)
     stage_clock_lap(clock, STAGE_FIRST_PASS);
 }
 
-/* Fetches the particles of the block two ahead while this one is worked on. */
-TALUS_INLINE void look_ahead(const struct run *run, size_t entry, struct block_scratch *scratch)
+void tile_look_ahead(const struct run *run, size_t entry, struct block_scratch *scratch)
 {
     const struct particle_block *ahead = block_ahead(run, entry, SECOND_PASS_AHEAD);
     scratch->ahead = (struct fetch_ahead){NULL, NULL};
@@ -61,7 +60,7 @@ TALUS_INLINE void look_ahead(const struct run *run, size_t entry, struct block_s
         (const char *)ahead->data + particle_block_bytes(ahead, run->grid.layout.double_count);
 }
 
-static void clear_sums(struct tile_sums *sums)
+void tile_sums_clear(struct tile_sums *sums)
 {
     memset(sums, 0, sizeof *sums);
     sums->least_jacobian = 1.0;
@@ -73,11 +72,11 @@ static void work_tile(struct run *run, size_t index, struct block_scratch *scrat
     struct tile *tile = &run->grid.tiles[index];
     struct tile_sums *sums = &run->tile_sums[index];
     stage_clock_lap(scratch->clock, STAGE_WAIT);
-    clear_sums(sums);
+    tile_sums_clear(sums);
     for (size_t entry = tile->begin; entry < tile->end; entry++) {
         const uint32_t block_index = run->grid.tile_blocks[entry];
         struct particle_block *block = &run->grid.blocks[block_index];
-        look_ahead(run, entry, scratch);
+        tile_look_ahead(run, entry, scratch);
         if (block->row_count == 0)
             continue;
         advance_strain(run, scratch, block, sums, still);
@@ -92,10 +91,10 @@ void stress_tile(struct run *run, size_t index, struct block_scratch *scratch)
     const struct tile *tile = &run->grid.tiles[index];
     struct tile_sums *sums = &run->tile_sums[index];
     stage_clock_lap(scratch->clock, STAGE_WAIT);
-    clear_sums(sums);
+    tile_sums_clear(sums);
     for (size_t entry = tile->begin; entry < tile->end; entry++) {
         struct particle_block *block = &run->grid.blocks[run->grid.tile_blocks[entry]];
-        look_ahead(run, entry, scratch);
+        tile_look_ahead(run, entry, scratch);
         if (block->row_count == 0)
             continue;
         advance_strain(run, scratch, block, sums, false);
@@ -111,7 +110,7 @@ void move_tile(struct run *run, size_t index, struct block_scratch *scratch)
     stage_clock_lap(scratch->clock, STAGE_WAIT);
     for (size_t entry = tile->begin; entry < tile->end; entry++) {
         const uint32_t block_index = run->grid.tile_blocks[entry];
-        look_ahead(run, entry, scratch);
+        tile_look_ahead(run, entry, scratch);
         if (run->grid.blocks[block_index].row_count > 0)
             advance_move(run, scratch, block_index, tile, &run->tile_sums[index]);
     }

@@ -115,11 +115,23 @@ static void check_anti_locking(struct scene_reader *reader)
     const struct talus_solver_options *solver = &reader->scene->solver;
     struct scene_path top = {.key = "solver"};
     struct scene_path parent = {.parent = &top, .key = "anti_locking"};
-    struct scene_path here = {.parent = &parent, .key = "field"};
+    struct scene_path field = {.parent = &parent, .key = "field"};
+    struct scene_path averaging = {.parent = &parent, .key = "averaging"};
+    const bool nodes =
+        solver->anti_locking == TALUS_CONTROL_NODE || solver->anti_locking == TALUS_CONTROL_HYBRID;
     if (solver->anti_locking == TALUS_CONTROL_NONE &&
         solver->anti_locking_field != TALUS_FIT_VOLUMETRIC)
-        scene_mistake(reader, &here, "contradiction", NULL, NULL,
+        scene_mistake(reader, &field, "contradiction", NULL, NULL,
                       "nothing is fitted with control \"none\": name a control volume");
+    if (solver->anti_locking_averaging == TALUS_AVERAGING_WEIGHTED)
+        return;
+    if (!nodes)
+        scene_mistake(reader, &averaging, "contradiction", NULL, NULL,
+                      "only fits over nodes have weights: control \"node\" or \"hybrid\"");
+    else if (shape_table[solver->shape_index]->reach > 0)
+        scene_mistake(reader, &averaging, "contradiction", NULL, NULL,
+                      "sums without weights are over the cells of a node: they need the shape "
+                      "\"linear\"");
 }
 
 /* A key of `solver` that only one shape knows. */

@@ -23,10 +23,10 @@ static const char *const transfer_words[] = {
 static const char *const stress_words[] = {"modified_last", "last", "first", NULL};
 static const char *const strain_words[] = {"finite", "small", NULL};
 static const char *const strain_lacking[] = {"rate", NULL};
-static const char *const control_words[] = {"none", "cell", NULL};
-static const char *const control_lacking[] = {"node", "hybrid", NULL};
+static const char *const control_words[] = {"none", "cell", "node", "hybrid", NULL};
 static const char *const field_words[] = {"volumetric", "full", "full_constant_volume", NULL};
 static const char *const apply_words[] = {"strain_and_stress", "strain", NULL};
+static const char *const averaging_words[] = {"weighted", "unweighted_sums", "unweighted", NULL};
 static const char *const small_mass_words[] = {"none", NULL};
 static const char *const small_mass_lacking[] = {"cutoff", "redistribute", NULL};
 static const char *const precision_words[] = {"double", "single", NULL};
@@ -36,9 +36,9 @@ static const struct scene_field anti_locking_fields[] = {
      .kind = SCENE_CHOICE,
      .unit = "1",
      .choices = control_words,
-     .lacking = control_lacking,
      .offset = AT(anti_locking),
-     .meaning = "over what strains are averaged: nothing, or each cell"},
+     .meaning = "over what strains are averaged: nothing, each cell, the support of each node, or "
+                "nodes for the volumetric and cells for the deviatoric part"},
     {.key = "field",
      .kind = SCENE_CHOICE,
      .unit = "1",
@@ -52,6 +52,12 @@ static const struct scene_field anti_locking_fields[] = {
      .choices = apply_words,
      .offset = AT(anti_locking_apply),
      .meaning = "average strains and stresses, or strains only"},
+    {.key = "averaging",
+     .kind = SCENE_CHOICE,
+     .unit = "1",
+     .choices = averaging_words,
+     .offset = AT(anti_locking_averaging),
+     .meaning = "nodes: weights N in the sums and back, in the way back only, or none at all"},
     {.key = NULL},
 };
 

@@ -49,6 +49,21 @@ static bool tractions_follow(const struct talus_scene *scene)
     return false;
 }
 
+static bool shows_stress(const struct talus_scene *scene)
+{
+    return scene_wants(scene, TALUS_FIELD_STRESS) || scene_wants(scene, TALUS_FIELD_MEAN_STRESS) ||
+           scene_wants(scene, TALUS_FIELD_VON_MISES);
+}
+
+/* From pass to pass, for stresses that are fitted over nodes. */
+static bool carries_stress(const struct talus_scene *scene)
+{
+    const struct talus_solver_options *solver = &scene->solver;
+    return (solver->anti_locking == TALUS_CONTROL_NODE ||
+            solver->anti_locking == TALUS_CONTROL_HYBRID) &&
+           solver->anti_locking_apply == TALUS_APPLY_STRAIN_AND_STRESS;
+}
+
 static size_t strain_components(const struct talus_scene *scene)
 {
     return scene->axis_count == 1 ? 3 : scene->axis_count == 2 ? 4 : 6;
@@ -73,10 +88,7 @@ void run_layout(const struct talus_scene *scene, struct particle_layout *layout)
     count[PARTICLE_STRAIN] = volumetric ? 1 : tensor;
     count[PARTICLE_HISTORY] = history;
     count[PARTICLE_PLASTIC_STRAIN] = scene_wants(scene, TALUS_FIELD_PLASTIC_STRAIN);
-    const bool stress = scene_wants(scene, TALUS_FIELD_STRESS) ||
-                        scene_wants(scene, TALUS_FIELD_MEAN_STRESS) ||
-                        scene_wants(scene, TALUS_FIELD_VON_MISES);
-    count[PARTICLE_STRESS] = stress ? tensor : 0;
+    count[PARTICLE_STRESS] = shows_stress(scene) || carries_stress(scene) ? tensor : 0;
     count[PARTICLE_DISPLACEMENT] = scene_wants(scene, TALUS_FIELD_DISPLACEMENT) ? axes : 0;
     const bool finite = scene->solver.strain == TALUS_STRAIN_FINITE;
     const bool strain = scene_wants(scene, TALUS_FIELD_STRAIN);
@@ -150,6 +162,8 @@ static enum talus_status build_materials(struct run *run, struct talus_error *er
         run->any_tensor = run->any_tensor || !material->model->volumetric;
         run->any_plastic = run->any_plastic || material->model->plastic;
         run->any_spin = run->any_spin || material->model->needs_spin;
+        run->reloads_gradient =
+            run->reloads_gradient || material->model->needs_rate || material->model->needs_spin;
         run->any_rate =
             run->any_rate || material->model->needs_rate || run->scene.solver.viscous_damping > 0;
         run->reference_density = fmin(run->reference_density, material->density);
@@ -270,11 +284,16 @@ enum talus_status run_build(struct run *run, const struct talus_scene *scene,
     run->finite_strain = scene->solver.strain == TALUS_STRAIN_FINITE;
     run->strain_components = strain_components(scene);
     run->strains_across = strains_across(scene);
+    run->normal_components = scene->dimension == TALUS_PLANE_STRESS ? 2 : 3;
     build_domain(scene, &run->grid.domain);
     run_layout(&run->scene, &run->grid.layout);
     run->stored_components = run->grid.layout.component_count[PARTICLE_STRAIN];
     node_layout_init(&run->grid.nodes.layout, scene->axis_count,
                      scene->solver.stress_update != TALUS_STRESS_MODIFIED_LAST);
+    node_fit_init(&run->node_fit, scene, run->strain_components);
+    node_fit_place(&run->node_fit,
+                   node_layout_extend(&run->grid.nodes.layout, run->node_fit.component_count));
+    run->shows_stress = shows_stress(scene);
     run_set_callbacks(run, options);
     run_add_slopes(run);
     run_add_tractions(run);

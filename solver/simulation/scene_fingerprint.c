@@ -64,6 +64,7 @@ static void add_solver(uint64_t *hash, const struct talus_scene *scene)
     add_number(hash, (uint64_t)solver->anti_locking);
     add_number(hash, (uint64_t)solver->anti_locking_field);
     add_number(hash, (uint64_t)solver->anti_locking_apply);
+    add_number(hash, (uint64_t)solver->anti_locking_averaging);
     add_number(hash, (uint64_t)solver->precision);
     add_reals(hash, reals, sizeof reals / sizeof reals[0]);
     add_reals(hash, &solver->flip_ratio, 1);

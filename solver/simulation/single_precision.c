@@ -131,6 +131,10 @@ enum talus_status single_precision_check(const struct run *run, double time_step
     if (run->scene.solver.precision != TALUS_PRECISION_SINGLE)
         return TALUS_OK;
     const struct single_precision estimate = single_precision_estimate(run, time_step);
+    if (run->node_fit.linear_count > 0)
+        return refuse(error,
+                      "linear fits over nodes take differences of squared coordinates [cells]",
+                      (double)run->node_fit.origin[0], " or the field \"volumetric\"");
     if (estimate.motion_error > MOTION_LIMIT)
         return refuse(
             error,

@@ -49,6 +49,7 @@ struct block_scratch {
     real *damped_stress[3]; /* diagonal of stress with bulk damping [Pa] */
     /* anti-locking, and compacting one material out of a mixed block */
     real *weight, *mean;
+    real *fit[6], *product, *coordinate[3]; /* fits over nodes */
     real *compact_strain[6], *compact_rate[6], *compact_spin[3], *compact_stress[6];
     real *compact_history[SCRATCH_HISTORY_MAX];
     real *compact_volume_ratio, *compact_plastic_strain, *compact_dissipation;

@@ -8,9 +8,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Weight and gradient of the hat function of a node at a point (Mast 2013, sec. 2.4.1). */
-static double hat(const struct reference *reference, const int node[3], const double position[3],
-                  double gradient[3])
+double reference_hat(const struct reference *reference, const int node[3], const double position[3],
+                     double gradient[3])
 {
     const struct talus_grid *grid = &reference->scene->grid;
     double value[3] = {1, 1, 1}, slope[3] = {0, 0, 0};
@@ -49,7 +48,7 @@ static struct support find_support(const struct reference *reference, const doub
             node[axis] = (int)floor((position[axis] - grid->min[axis]) / grid->cell[axis]) +
                          (corner >> axis & 1);
         support.node[corner] = &reference->nodes[node_index(reference, node)];
-        support.weight[corner] = hat(reference, node, position, support.gradient[corner]);
+        support.weight[corner] = reference_hat(reference, node, position, support.gradient[corner]);
     }
     return support;
 }
@@ -294,6 +293,7 @@ static void gather_gradients(struct reference *reference)
         const struct support support = find_support(reference, p->position);
         memset(&p->gradient, 0, sizeof p->gradient);
         p->cell = cell_index(reference, p->position);
+        memcpy(p->gathered, p->position, sizeof p->gathered);
         for (int i = 0; i < support.count; i++) {
             for (int row = 0; row < 3; row++) {
                 for (int axis = 0; axis < 3; axis++)
@@ -433,6 +433,7 @@ void reference_start(struct reference *reference, const struct talus_scene *scen
         p->reference_volume = p->mass / material->values[MATERIAL_VALUE_DENSITY];
         p->volume_ratio = 1;
         p->cell = cell_index(reference, p->position);
+        memcpy(p->gathered, p->position, sizeof p->gathered);
         if (scene->solver.strain == TALUS_STRAIN_FINITE &&
             !material_table[material->model_index]->volumetric)
             p->elastic = tensor_unit();

@@ -23,6 +23,7 @@ struct reference_particle {
     double grid_velocity[3], divergence;
     struct reference_update update;
     int cell;
+    double gathered[3]; /* where it was when the step gathered: in that cell, before the move */
 };
 
 struct reference_node {
@@ -60,5 +61,13 @@ void reference_momentum(const struct reference *reference, double momentum[3]);
 
 /* ---- reference_stress.c: strain, anti-locking, stress; with a zero step only stress ---- */
 void reference_update_stress(struct reference *reference, double time_step);
+
+/* ---- reference_fit.c: anti-locking as the scene asks for it ---- */
+enum reference_fitted { REFERENCE_STRAIN, REFERENCE_STRESS, REFERENCE_DIVERGENCE };
+void reference_fit(struct reference *reference, enum reference_fitted what);
+
+/* Weight and gradient of the hat function of a node at a point (Mast 2013, sec. 2.4.1). */
+double reference_hat(const struct reference *reference, const int node[3], const double position[3],
+                     double gradient[3]);
 
 #endif

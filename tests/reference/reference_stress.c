@@ -1,11 +1,10 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Trial strain, cell average, material, cell average (Mast 2013, tables 3.4 and 4.1). */
+/* Trial strain, fit, material, fit (Mast 2013, tables 3.4 and 4.1). */
 #include "reference_mpm.h"
 
 #include "materials/material.h"
 
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 static const struct material *model_of(const struct reference *reference,
@@ -45,55 +44,6 @@ static void trial_strain(const struct reference *reference, struct reference_par
     p->divergence = tensor_trace(p->gradient);
 }
 
-enum averaged { AVERAGE_STRAIN, AVERAGE_STRESS, AVERAGE_DIVERGENCE };
-
-static double averaged_value(const struct reference *reference, const struct reference_particle *p,
-                             enum averaged what)
-{
-    if (what == AVERAGE_DIVERGENCE)
-        return p->divergence;
-    if (what == AVERAGE_STRESS)
-        return tensor_trace(p->update.stress) / 3.0;
-    return model_of(reference, p)->volumetric ? p->update.strain.m[0][0]
-                                              : tensor_trace(p->update.strain);
-}
-
-static void replace_value(const struct reference *reference, struct reference_particle *p,
-                          enum averaged what, double mean)
-{
-    const double shift = mean - averaged_value(reference, p, what);
-    if (what == AVERAGE_DIVERGENCE)
-        p->divergence = mean;
-    else if (what == AVERAGE_STRESS)
-        p->update.stress = tensor_add(p->update.stress, shift, tensor_unit());
-    else if (model_of(reference, p)->volumetric)
-        p->update.strain.m[0][0] = mean;
-    else
-        p->update.strain = tensor_add(p->update.strain, shift / 3.0, tensor_unit());
-}
-
-/* Mean over the particles of a cell (and one material), weighted by mass: for every particle by
- * looking at all others. */
-static void average(struct reference *reference, enum averaged what)
-{
-    double *mean = malloc(reference->particle_count * sizeof *mean);
-    for (size_t i = 0; mean != NULL && i < reference->particle_count; i++) {
-        const struct reference_particle *p = &reference->particles[i];
-        double sum = 0, mass = 0;
-        for (size_t j = 0; j < reference->particle_count; j++) {
-            const struct reference_particle *q = &reference->particles[j];
-            if (q->cell != p->cell || (what != AVERAGE_DIVERGENCE && q->material != p->material))
-                continue;
-            sum += q->mass * averaged_value(reference, q, what);
-            mass += q->mass;
-        }
-        mean[i] = sum / mass;
-    }
-    for (size_t i = 0; mean != NULL && i < reference->particle_count; i++)
-        replace_value(reference, &reference->particles[i], what, mean[i]);
-    free(mean);
-}
-
 /* tau of the force: with the bulk viscosity C rho h c_b tr d. */
 static void force_stress(struct reference *reference, struct reference_particle *p,
                          double time_step)
@@ -124,12 +74,12 @@ static void store_strain(const struct reference *reference, struct reference_par
 void reference_update_stress(struct reference *reference, double time_step)
 {
     const struct talus_solver_options *solver = &reference->scene->solver;
-    const bool averages = solver->anti_locking == TALUS_CONTROL_CELL;
+    const bool averages = solver->anti_locking != TALUS_CONTROL_NONE;
     for (size_t i = 0; i < reference->particle_count; i++)
         trial_strain(reference, &reference->particles[i], time_step);
     if (averages) {
-        average(reference, AVERAGE_STRAIN);
-        average(reference, AVERAGE_DIVERGENCE);
+        reference_fit(reference, REFERENCE_STRAIN);
+        reference_fit(reference, REFERENCE_DIVERGENCE);
     }
     for (size_t i = 0; i < reference->particle_count; i++) {
         struct reference_particle *p = &reference->particles[i];
@@ -138,7 +88,7 @@ void reference_update_stress(struct reference *reference, double time_step)
         store_strain(reference, p);
     }
     if (averages && solver->anti_locking_apply == TALUS_APPLY_STRAIN_AND_STRESS)
-        average(reference, AVERAGE_STRESS);
+        reference_fit(reference, REFERENCE_STRESS);
     for (size_t i = 0; i < reference->particle_count; i++)
         force_stress(reference, &reference->particles[i], time_step);
 }
