@@ -326,6 +326,34 @@ static void test_distances(void **state)
     wall_set_release(&bench.walls);
 }
 
+/* A body of revolution: each node stands for a ring, and together they are the face. */
+static void test_areas_of_revolution(void **state)
+{
+    (void)state;
+    static const double pi = 3.14159265358979323846;
+    struct bench bench;
+    bench_init(&bench, 2);
+    bench.domain.revolves = true;
+    simulation_fixture_add_plane(&bench.fixture, "floor", 1, 0.0, 1, "slip", 0);
+    simulation_fixture_add_plane(&bench.fixture, "tube", 0, 4.0, -1, "slip", 0);
+    simulation_fixture_add_obstacle(&bench.fixture, "pile", (double[3]){1, 0}, (double[3]){2.5, 2},
+                                    "slip", 0);
+    struct talus_boundary *plate =
+        simulation_fixture_add_plane(&bench.fixture, "plate", 1, 2.5, 1, "slip", 0);
+    plate->shape = TALUS_BOUNDARY_FACE;
+    plate->point[0] = 1.5;
+    plate->axis_1[0] = 1;
+    plate->size[0] = 3;
+    bench_build(&bench);
+    assert_close(at(&bench, 0, 0, 0).area[0], pi * 0.25 * 0.25, 1e-15, 1);
+    assert_close(total_area(&bench, 0), pi * 16, 1e-14, 50);
+    assert_close(total_area(&bench, 1), 2 * pi * 4 * 3, 1e-14, 50);
+    assert_close(total_area(&bench, 3), 2 * pi * 2.5 * 2, 1e-14, 50);     /* x_max */
+    assert_close(total_area(&bench, 5), pi * (2.5 * 2.5 - 1), 1e-14, 50); /* y_max */
+    assert_close(total_area(&bench, 7), pi * 9, 1e-14, 50); /* behind the inside of the box */
+    wall_set_release(&bench.walls);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -340,6 +368,7 @@ int main(void)
         cmocka_unit_test(test_cells_beside_a_box_fold),
         cmocka_unit_test(test_eliminating_boundaries),
         cmocka_unit_test(test_distances),
+        cmocka_unit_test(test_areas_of_revolution),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
