@@ -82,6 +82,8 @@ struct talus_solver_options {
     double hybrid_scale;   /* cpdi_hybrid: of the domains, in the search for the edge */
     double hybrid_count;   /* cpdi_hybrid: most particles of a cell at the edge */
     enum talus_stress_update stress_update;
+    double theta;        /* share of the new velocity in the one that moves the material; 1 */
+    double strain_theta; /* ... in the one that strains it; 1 */
     enum talus_strain strain;
     enum talus_anti_locking_control anti_locking;
     enum talus_anti_locking_field anti_locking_field;

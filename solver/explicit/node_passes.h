@@ -7,6 +7,8 @@
 
 #include "explicit/run.h"
 
+struct contact;
+
 enum { NODE_CHUNK = 256, WALL_CHUNK = 128 }; /* node blocks, wall nodes */
 /* Per chunk and face: impulse 3, moment 3, area; after the faces of a chunk: impulse of the walls
  * on the material 3, its magnitude, work of friction; what the walls change of local damping:
@@ -45,6 +47,17 @@ void wall_nodes_hold_back(struct run *run, size_t begin, size_t end, double fact
 /* Before a stress pass: what the walls let pass of the velocities at wall nodes begin ... end - 1.
  * Nothing is booked: no particle is pushed. */
 void wall_nodes_start(struct run *run, size_t begin, size_t end);
+/* ---- start_velocity.c, where node_layout.start is kept ---- */
+/* v - increment of one axis of a block without walls. */
+void node_keep_start(const struct run *run, size_t block, uint32_t axis, lanes velocity,
+                     lanes increment);
+/* `start` as far as the walls of `solved` let it pass. */
+void wall_node_keep_start(const struct run *run, const struct wall_node *wall,
+                          const struct contact *solved, const double start[3]);
+/* Velocity of a block, after the walls, into the one that moves and the one that strains. */
+void blend_block(const struct run *run, size_t block);
+
+/* ---- wall_update.c ---- */
 /* Applies the walls at the wall nodes of a chunk and sums what they did into its partial. */
 void wall_nodes_update(struct run *run, size_t chunk, double factor);
 /* Adds the chunks in order, to faces, boundaries and the audit. */

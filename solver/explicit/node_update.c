@@ -143,8 +143,11 @@ static void update_block(struct run *run, size_t block, double factor)
         correction = lanes_keep(inertia.moves, correction);
         lanes_store(node_values(nodes, block, nodes->layout.correction + axis), correction);
         lanes_store(momentum, lanes_splat(0.0)); /* may be the place of the velocity */
-        lanes_store(node_values(nodes, block, nodes->layout.velocity + axis),
-                    lanes_keep(inertia.moves, start) + correction);
+        const lanes velocity = lanes_keep(inertia.moves, start) + correction;
+        lanes_store(node_values(nodes, block, nodes->layout.velocity + axis), velocity);
+        if (nodes->layout.start != 0)
+            node_keep_start(run, block, axis, velocity,
+                            last ? correction : correction + lanes_keep(inertia.moves, whole));
     }
 }
 
@@ -234,6 +237,11 @@ static void update_nodes(struct run *run, double factor, bool clears)
 #pragma omp for schedule(static)
     for (size_t chunk = 0; chunk < wall_chunk_count(run); chunk++)
         wall_nodes_update(run, chunk, factor);
+    if (run->grid.nodes.layout.start == 0)
+        return;
+#pragma omp for schedule(static)
+    for (size_t block = 0; block < run->grid.nodes.count; block++)
+        blend_block(run, block);
 }
 
 /* Blocks that the update has not cleared, because the walls or the ramp still needed them. */

@@ -288,6 +288,10 @@ void run_kick_nodes(struct run *run);
 void run_start_nodes(struct run *run);
 void run_update_nodes(struct run *run);
 
+/* ---- start_velocity.c ---- */
+/* Makes room at the nodes for the velocity at the start of a step, if the scene needs it. */
+void run_keep_start_velocity(struct run *run);
+
 /* ---- rebin.c ---- */
 /* Moves the particles of the outboxes to their new blocks. */
 TALUS_MUST_CHECK enum talus_status run_rebin(struct run *run, struct talus_error *error);

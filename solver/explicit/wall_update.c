@@ -191,6 +191,8 @@ static void update_wall_node(struct run *run, struct wall_node *wall, double fac
             (real)(contact.handed_velocity[axis] - passage.kept[axis]);
         totals[4] -= wall->impulse[axis] * contact.velocity[axis];
     }
+    if (nodes->layout.start != 0)
+        wall_node_keep_start(run, wall, &contact, passage.start);
     /* What walls that move do beyond their work on the material stays behind as friction, as all
      * does that walls at rest do. */
     totals[9] += work;

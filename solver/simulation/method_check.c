@@ -74,6 +74,30 @@ static enum talus_status check_elements(const struct talus_scene *scene, struct 
     return TALUS_OK;
 }
 
+/* Straining with anything but the velocity at the end of the step amplifies every wave by
+ * sqrt(1 + (s - theta) (w dt)^2) per step with `last`, where s <= 1 is what a transfer leaves of
+ * it, and by sqrt(1 + (1 - theta) (w dt)^2) with `modified_last`. */
+static enum talus_status check_theta(const struct talus_scene *scene, struct talus_error *error)
+{
+    static const char pointer[] = "/solver/strain_theta";
+    const struct talus_solver_options *solver = &scene->solver;
+    if (solver->strain_theta == 1)
+        return TALUS_OK;
+    if (solver->stress_update == TALUS_STRESS_FIRST)
+        return talus_error_set(error, TALUS_INVALID, "contradiction", pointer,
+                               "\"first\" strains with the velocity at the start of the step: "
+                               "there is nothing to choose");
+    if (transfer_blends(solver))
+        return talus_error_set(error, TALUS_INVALID, "contradiction", pointer,
+                               "a share of PIC needs the velocity at the end of the step at the "
+                               "nodes");
+    if (!solver->allow_unstable)
+        return talus_error_set(error, TALUS_INVALID, "unstable", pointer,
+                               "below 1 every wave grows from step to step unless viscous_damping "
+                               "takes it away: needs \"allow_unstable\": true");
+    return TALUS_OK;
+}
+
 enum talus_status method_check(const struct talus_scene *scene, struct talus_error *error)
 {
     enum talus_status status = check_share(scene, error);
@@ -83,5 +107,7 @@ enum talus_status method_check(const struct talus_scene *scene, struct talus_err
         status = check_affine(scene, error);
     if (status == TALUS_OK)
         status = check_elements(scene, error);
+    if (status == TALUS_OK)
+        status = check_theta(scene, error);
     return status;
 }

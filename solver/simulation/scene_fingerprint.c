@@ -67,7 +67,7 @@ static void add_solver(uint64_t *hash, const struct talus_scene *scene)
     add_number(hash, (uint64_t)solver->anti_locking_averaging);
     add_number(hash, (uint64_t)solver->precision);
     add_reals(hash, reals, sizeof reals / sizeof reals[0]);
-    add_reals(hash, &solver->flip_ratio, 1);
+    add_reals(hash, (const double[]){solver->flip_ratio, solver->theta, solver->strain_theta}, 3);
     add_reals(hash, scene->gravity, 3);
     add_tables(hash, scene->gravity_table, 3);
     add_number(hash, scene->slope_count);

@@ -16,6 +16,7 @@ void node_layout_init(struct node_layout *layout, size_t axis_count,
     layout->velocity = momentum_outlives_velocity ? layout->kick : layout->momentum;
     layout->motion = layout->velocity;
     layout->external = 0;
+    layout->start = 0;
     layout->component_count = 1 + 4 * axes;
 }
 

@@ -233,6 +233,49 @@ static void apply_walls(struct reference *reference, struct reference_node *node
     }
 }
 
+/* `velocity`, as far as the walls let it pass where no force changes it. */
+static void constrain(const struct reference *reference, const struct reference_node *node,
+                      double velocity[3])
+{
+    const size_t index = (size_t)(node - reference->nodes);
+    struct reference_contact contact = {.pushed = node->wall_impulse};
+    bool active[REFERENCE_WALL_MAX];
+    if (!find_walls(reference, index, active))
+        return;
+    memcpy(contact.free_velocity, velocity, sizeof contact.free_velocity);
+    memcpy(contact.increment, velocity, sizeof contact.increment);
+    reference_contact_solve(reference->walls, reference->wall_count, active, node->mass,
+                            reference->time_step, &contact);
+    memcpy(velocity, contact.velocity, sizeof contact.velocity);
+}
+
+/* Velocity at the start of the step, which strains the material of `first`. */
+static void start_node(struct reference *reference, size_t index)
+{
+    struct reference_node *node = &reference->nodes[index];
+    memset(node->straining, 0, sizeof node->straining);
+    if (node->mass <= reference->mass_cutoff)
+        return;
+    for (int axis = 0; axis < 3; axis++)
+        node->straining[axis] = node->momentum[axis] / node->mass;
+    constrain(reference, node, node->straining);
+}
+
+/* What moves and strains the material, between the velocity at the start and that at the end. */
+static void blend_velocities(const struct reference *reference, struct reference_node *node,
+                             const double before[3])
+{
+    const struct talus_solver_options *solver = &reference->scene->solver;
+    double start[3];
+    memcpy(start, before, sizeof start);
+    constrain(reference, node, start);
+    for (int axis = 0; axis < 3; axis++) {
+        const double change = node->velocity[axis] - start[axis];
+        node->motion[axis] = node->velocity[axis] - (1 - solver->theta) * change;
+        node->straining[axis] = node->velocity[axis] - (1 - solver->strain_theta) * change;
+    }
+}
+
 static void update_node(struct reference *reference, size_t index)
 {
     struct reference_node *node = &reference->nodes[index];
@@ -242,6 +285,8 @@ static void update_node(struct reference *reference, size_t index)
     memset(node->velocity, 0, sizeof node->velocity);
     memset(node->correction, 0, sizeof node->correction);
     memset(node->wall_impulse, 0, sizeof node->wall_impulse);
+    memset(node->motion, 0, sizeof node->motion);
+    memset(node->straining, 0, sizeof node->straining);
     if (node->mass <= reference->mass_cutoff)
         return;
     free_increment(reference, node, increment);
@@ -258,32 +303,12 @@ static void update_node(struct reference *reference, size_t index)
     }
     for (int axis = 0; axis < 3; axis++)
         node->correction[axis] -= node->momentum[axis] / node->mass;
+    blend_velocities(reference, node, before);
     /* The potential counts the whole of gravity; what a ramp holds back is external work. */
     for (int axis = 0; axis < 3; axis++)
         reference->external_energy -= (1 - force_factor(reference)) * node->mass *
-                                      reference->scene->gravity[axis] * node->velocity[axis] *
+                                      reference->scene->gravity[axis] * node->motion[axis] *
                                       reference->time_step;
-}
-
-/* Velocity at the start of the step, as far as the walls let it pass. */
-static void start_node(struct reference *reference, size_t index)
-{
-    struct reference_node *node = &reference->nodes[index];
-    struct reference_contact contact;
-    bool active[REFERENCE_WALL_MAX];
-    memset(&contact, 0, sizeof contact);
-    memset(node->velocity, 0, sizeof node->velocity);
-    if (node->mass <= reference->mass_cutoff)
-        return;
-    for (int axis = 0; axis < 3; axis++)
-        node->velocity[axis] = contact.free_velocity[axis] = contact.increment[axis] =
-            node->momentum[axis] / node->mass;
-    if (!find_walls(reference, index, active))
-        return;
-    contact.pushed = node->wall_impulse;
-    reference_contact_solve(reference->walls, reference->wall_count, active, node->mass,
-                            reference->time_step, &contact);
-    memcpy(node->velocity, contact.velocity, sizeof node->velocity);
 }
 
 static void gather_gradients(struct reference *reference)
@@ -298,7 +323,7 @@ static void gather_gradients(struct reference *reference)
             for (int row = 0; row < 3; row++) {
                 for (int axis = 0; axis < 3; axis++)
                     p->gradient.m[row][axis] +=
-                        support.node[i]->velocity[row] * support.gradient[i][axis];
+                        support.node[i]->straining[row] * support.gradient[i][axis];
             }
         }
     }
@@ -338,17 +363,19 @@ static void move_particles(struct reference *reference)
     for (size_t k = 0; k < reference->particle_count; k++) {
         struct reference_particle *p = &reference->particles[k];
         const struct support support = find_support(reference, p->position);
+        double motion[3] = {0, 0, 0};
         memset(p->grid_velocity, 0, sizeof p->grid_velocity);
         for (int i = 0; i < support.count; i++) {
             const struct reference_node *node = support.node[i];
             for (int row = 0; row < 3; row++) {
                 p->velocity[row] += support.weight[i] * node->correction[row];
                 p->grid_velocity[row] += support.weight[i] * node->velocity[row];
+                motion[row] += support.weight[i] * node->motion[row];
             }
         }
         for (int axis = 0; axis < 3; axis++) {
             p->velocity[axis] += share * (p->grid_velocity[axis] - p->velocity[axis]);
-            p->position[axis] += reference->time_step * p->grid_velocity[axis];
+            p->position[axis] += reference->time_step * motion[axis];
         }
     }
 }

@@ -30,7 +30,8 @@ struct reference_node {
     double position[3];
     double mass, force[3], momentum[3];
     double kick[3], velocity[3], correction[3];
-    double wall_impulse[3]; /* on the material, in the last step */
+    double motion[3], straining[3]; /* velocities between start and end of the step */
+    double wall_impulse[3];         /* on the material, in the last step */
 };
 
 struct reference {

@@ -32,7 +32,8 @@ struct variant {
     double viscous_damping, local_damping, pic_rate, force_ramp;
     enum talus_wall wall;
     bool tension_release;
-    const char *transfer; /* NULL: flip */
+    const char *transfer;   /* NULL: flip */
+    double lag, strain_lag; /* 1 - theta, 1 - strain_theta */
 };
 
 /* Local damping is not combined with sliding and release: the sign of a velocity around zero and a
@@ -113,6 +114,24 @@ static const struct variant variants[] = {
      .axis_count = 3,
      .stress_update = TALUS_STRESS_FIRST,
      .transfer = "apic"},
+    {.name = "column, plane strain, last, theta, strain_theta",
+     .motion = COLUMN,
+     .axis_count = 2,
+     .stress_update = TALUS_STRESS_LAST,
+     .viscous_damping = 0.4,
+     .force_ramp = 0.05,
+     .lag = 0.5,
+     .strain_lag = 0.1},
+    {.name = "column, plane strain, modified_last, theta",
+     .motion = COLUMN,
+     .axis_count = 2,
+     .lag = 0.5},
+    {.name = "slide, plane strain, first, theta, pic",
+     .motion = SLIDE,
+     .axis_count = 2,
+     .stress_update = TALUS_STRESS_FIRST,
+     .transfer = "pic",
+     .lag = 1.0},
     {.name = "column, line, last, pic",
      .motion = COLUMN,
      .axis_count = 1,
@@ -268,7 +287,9 @@ static void build(struct simulation_fixture *fixture, const struct material *mat
     scene->solver.local_damping = variant->local_damping;
     scene->solver.pic_rate = variant->pic_rate;
     scene->solver.force_ramp = variant->force_ramp;
-    scene->solver.allow_unstable = true; /* the edges of the bodies with apic stay in their cells */
+    scene->solver.allow_unstable = true; /* apic: edges stay in their cells; strain_theta: damped */
+    scene->solver.theta = 1 - variant->lag;
+    scene->solver.strain_theta = 1 - variant->strain_lag;
     while (variant->transfer != NULL &&
            strcmp(transfer_of(&scene->solver)->name, variant->transfer) != 0)
         scene->solver.transfer_index++;

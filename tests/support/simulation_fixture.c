@@ -20,6 +20,7 @@ void simulation_fixture_init(struct simulation_fixture *fixture, size_t axis_cou
     }
     scene->solver.courant = 0.4;
     scene->solver.flip_ratio = NAN;
+    scene->solver.theta = scene->solver.strain_theta = 1.0;
     scene->solver.precision = talus_simulation_precision();
     scene->energy_growth_limit = 0.01;
     scene->materials = fixture->materials;

@@ -21,7 +21,7 @@ MISTAKES = [
     ("block", ["grid", "outside"], "ignore"),
     ("block", ["solver"], {"shape": "gimp3"}),
     ("block", ["solver"], {"time_step": "now"}),
-    ("block", ["solver"], {"theta": 0.5}),
+    ("block", ["solver"], {"theta": 1.5}),
     ("block", ["solver"], {"tolerance": 1}),
     ("block", ["materials", "soil", "model"], "mud"),
     ("block", ["materials", "soil", "model"], REMOVE),
