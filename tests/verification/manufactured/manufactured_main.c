@@ -20,6 +20,8 @@ struct stage {
     const struct manufactured *problem;
     struct elastic elastic;
     double *reference; /* [3 * particle count] owned; NULL while it is being found */
+    double start;      /* [s] instant of the initial velocities: half a step before t = 0, since in
+                          the scheme they belong to the middle of the step behind */
 };
 
 struct errors {
@@ -40,7 +42,7 @@ static void start_velocity(void *context, uint32_t id, const double position[3],
 {
     const struct stage *stage = context;
     (void)id;
-    stage->problem->velocity(position, time, out);
+    stage->problem->velocity(position, time + stage->start, out);
 }
 
 static struct talus_simulation *create(const struct talus_scene *scene, struct stage *stage,
@@ -57,7 +59,7 @@ static struct talus_simulation *create(const struct talus_scene *scene, struct s
     return simulation;
 }
 
-/* The places of the particles by id, from a simulation that does not run. */
+/* The places of the particles by id and the first step, from a simulation that does not run. */
 static double *find_references(const struct talus_scene *scene, struct stage *stage)
 {
     struct talus_simulation *simulation = create(scene, stage, 1);
@@ -68,6 +70,7 @@ static double *find_references(const struct talus_scene *scene, struct stage *st
     double *reference = calloc(3 * state.particle_count, sizeof *reference);
     if (reference != NULL)
         talus_simulation_read_positions(simulation, reference);
+    stage->start = -0.5 * state.time_step;
     talus_simulation_destroy(simulation);
     return reference;
 }
