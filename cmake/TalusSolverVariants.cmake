@@ -39,7 +39,7 @@ function(talus_solver_options library)
 endfunction()
 
 # Where literals have to be of the type of the kernels, or each would drag a loop to double.
-set(TALUS_KERNELS "/(math|shapes|materials|antilocking)/|/explicit/(kinematics|material_stage)[.]c$")
+set(TALUS_KERNELS "/(math|shapes|materials|antilocking)/|/explicit/(kinematics|material_stage|anti_locking_[a-z_]*|out_of_plane)[.]c$")
 
 # Adds talus_solver_VARIANT, compiled with further options: for double precision.
 function(talus_add_solver variant)

@@ -37,7 +37,7 @@ TALUS_INLINE real sym3_trace(struct sym3 a)
 TALUS_INLINE real sym3_dot(struct sym3 a, struct sym3 b)
 {
     return a.xx * b.xx + a.yy * b.yy + a.zz * b.zz +
-           2.0 * (a.xy * b.xy + a.yz * b.yz + a.xz * b.xz);
+           (real)2.0 * (a.xy * b.xy + a.yz * b.yz + a.xz * b.xz);
 }
 
 TALUS_INLINE real sym3_norm(struct sym3 a)
@@ -71,7 +71,7 @@ TALUS_INLINE struct sym3 sym3_add_diagonal(struct sym3 a, real value)
 
 TALUS_INLINE struct sym3 sym3_deviator(struct sym3 a)
 {
-    return sym3_add_diagonal(a, -sym3_trace(a) * (1.0 / 3.0));
+    return sym3_add_diagonal(a, -sym3_trace(a) * ((real)1.0 / (real)3.0));
 }
 
 /* a a */
@@ -117,9 +117,9 @@ TALUS_INLINE struct sym3 mat3_symmetric(struct mat3 a)
     return (struct sym3){a.m[0][0],
                          a.m[1][1],
                          a.m[2][2],
-                         0.5 * (a.m[0][1] + a.m[1][0]),
-                         0.5 * (a.m[1][2] + a.m[2][1]),
-                         0.5 * (a.m[0][2] + a.m[2][0])};
+                         (real)0.5 * (a.m[0][1] + a.m[1][0]),
+                         (real)0.5 * (a.m[1][2] + a.m[2][1]),
+                         (real)0.5 * (a.m[0][2] + a.m[2][0])};
 }
 
 /* Component (i, j) of a b^T. */

@@ -8,10 +8,10 @@ TALUS_INLINE void bspline3_weights(lanes x, lanes half, lane_mask odd, lanes w[W
     (void)half, (void)odd;
     const lanes t = 0.5 + x, u = 0.5 - x; /* from the lower, from the upper node */
     const lanes tt = t * t, uu = u * u;
-    w[0] = uu * u * (1.0 / 6.0);
-    w[1] = 2.0 / 3.0 - tt * (1 - 0.5 * t);
-    w[2] = 2.0 / 3.0 - uu * (1 - 0.5 * u);
-    w[3] = tt * t * (1.0 / 6.0);
+    w[0] = uu * u * (real)(1.0 / 6.0);
+    w[1] = (real)(2.0 / 3.0) - tt * (1 - 0.5 * t);
+    w[2] = (real)(2.0 / 3.0) - uu * (1 - 0.5 * u);
+    w[3] = tt * t * (real)(1.0 / 6.0);
     dw[0] = -0.5 * uu;
     dw[1] = t * (1.5 * t - 2);
     dw[2] = u * (2 - 1.5 * u);

@@ -124,7 +124,7 @@ static void LOCAL(one_weights)(struct LOCAL(one) * one)
         for (int k = 0; k < WIDE_NODES; k++) {
             one->w[axis][k] = stencil.w[axis][k][lane];
             one->slope[axis][k] = stencil.dw[axis][k][lane] * one->context->inverse_cell[axis];
-            one->arm[axis][k] = (real)(k - 1.5) - support.position[axis][one->slot];
+            one->arm[axis][k] = (real)k - (real)1.5 - support.position[axis][one->slot];
         }
     }
 }

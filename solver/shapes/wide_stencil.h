@@ -80,7 +80,7 @@ TALUS_INLINE void LOCAL(affine_stencil)(const struct LOCAL(support) * support, s
         lanes first[WIDE_NODES], second = {0};
         UNROLL for (int k = 0; k < WIDE_NODES; k++)
         {
-            const lanes arm = (real)(k - 1.5) - x;
+            const lanes arm = (real)k - (real)1.5 - x;
             first[k] = stencil->w[axis][k] * arm;
             second += first[k] * arm;
         }
