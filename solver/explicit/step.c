@@ -201,7 +201,7 @@ enum talus_status run_start(struct run *run, struct talus_error *error)
 {
     run->wall_node_count = 0;
     run->walled_block_count = 0;
-    run->time = -run->scene.solver.settle_time;
+    run->time = 0.0 - run->scene.solver.settle_time; /* and not -0 */
     wall_set_prepare(&run->walls, &run->scene, &run->grid.domain, run->time, 0);
     if (sparse_grid_purge(&run->grid) != 0 || run_find_walls(run) != 0 ||
         run_prepare_tiles(run) != 0 || sparse_grid_pack(&run->grid) != 0 ||

@@ -46,9 +46,9 @@ static void read_up(const json_t *gravity, struct render_scene *scene)
     scene->up_sign = up[scene->up_axis] < 0.0 ? -1.0 : 1.0;
 }
 
-/* The distance of particles along an axis that a body's lattice asks for; cell if it does not say.
- */
-static double lattice_spacing(const json_t *body, const double cell[3], int axis)
+/* The distance of particles along an axis that a body's lattice asks for, or the size of the first
+ * of a list; cell if it does not say. */
+static double lattice_spacing(const json_t *body, const double cell[3], int axis_count, int axis)
 {
     double value[3] = {0.0, 0.0, 0.0};
     read_vector(json_object_get(body, "spacing"), value);
@@ -64,6 +64,9 @@ static double lattice_spacing(const json_t *body, const double cell[3], int axis
     read_vector(json_object_get(box, "max"), high);
     if (value[axis] > 0.0 && high[axis] > low[axis])
         return (high[axis] - low[axis]) / value[axis];
+    const json_t *volumes = json_object_get(json_object_get(body, "points"), "volumes");
+    if (json_array_size(volumes) > 0)
+        return pow(json_number_value(json_array_get(volumes, 0)), 1.0 / (double)axis_count);
     return cell[axis];
 }
 
@@ -75,7 +78,8 @@ static void read_spacing(const json_t *bodies, struct render_scene *scene)
     json_array_foreach(bodies, index, body)
     {
         for (int axis = 0; axis < scene->axis_count; axis++)
-            scene->spacing = fmin(scene->spacing, lattice_spacing(body, scene->cell, axis));
+            scene->spacing =
+                fmin(scene->spacing, lattice_spacing(body, scene->cell, scene->axis_count, axis));
     }
     if (!(scene->spacing > 0.0) || isinf(scene->spacing))
         scene->spacing = scene->cell[0];
