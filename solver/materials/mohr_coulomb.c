@@ -136,31 +136,49 @@ TALUS_INLINE real root_of_slope(real tangent)
     return real_sqrt(1 + tangent * tangent) + tangent;
 }
 
+struct surface { /* one slot's of struct surfaces */
+    real slope, flow, strength, limit;
+};
+
+/* `share`: of the fall from peak to residual that is left. */
+TALUS_INLINE struct surface surface_of(const struct mohr_coulomb *model, real root_of_flow,
+                                       real share)
+{
+    const real degrees =
+        (real)model->friction_deg.residual + (real)model->friction_deg.drop * share;
+    const real cohesion = (real)model->cohesion.residual + (real)model->cohesion.drop * share;
+    const real tangent = elementary_tangent_deg(degrees);
+    const real root = root_of_slope(tangent);
+    const real root_of_m = minimum(root, root_of_flow);
+    const real apex = tangent > 0 ? cohesion / tangent : (real)INFINITY;
+    return (struct surface){root * root, root_of_m * root_of_m, 2 * cohesion * root,
+                            minimum((real)model->tension, apex)};
+}
+
+TALUS_INLINE void store_surface(struct surfaces *surfaces, size_t index, struct surface surface)
+{
+    surfaces->slope[index] = surface.slope;
+    surfaces->flow[index] = surface.flow;
+    surfaces->strength[index] = surface.strength;
+    surfaces->limit[index] = surface.limit;
+}
+
 static void surfaces_of(const void *constants, const real *shear, size_t count,
                         struct surfaces *surfaces)
 {
-    const struct mohr_coulomb *model = constants;
-    const real residual_deg = (real)model->friction_deg.residual;
-    const real drop_deg = (real)model->friction_deg.drop;
-    const real residual = (real)model->cohesion.residual;
-    const real drop = (real)model->cohesion.drop;
-    const real tension = (real)model->tension;
-    const real root_of_flow = root_of_slope(elementary_tangent_deg((real)model->dilation_deg));
+    const struct mohr_coulomb model = *(const struct mohr_coulomb *)constants;
+    const real root_of_flow = root_of_slope(elementary_tangent_deg((real)model.dilation_deg));
     MATERIAL_ALIGNED real share[MATERIAL_CHUNK];
     count = whole_rows(count);
-    softening_shares(&model->softening, shear, count, share);
-#pragma omp simd
-    for (size_t index = 0; index < count; index++) {
-        const real tangent = elementary_tangent_deg(residual_deg + drop_deg * share[index]);
-        const real cohesion = residual + drop * share[index];
-        const real root = root_of_slope(tangent);
-        const real root_of_m = minimum(root, root_of_flow);
-        const real apex = tangent > 0 ? cohesion / tangent : (real)INFINITY;
-        surfaces->slope[index] = root * root;
-        surfaces->flow[index] = root_of_m * root_of_m;
-        surfaces->strength[index] = 2 * cohesion * root;
-        surfaces->limit[index] = minimum(tension, apex);
+    if (!softening_shares(&model.softening, shear, count, share)) {
+        const struct surface peak = surface_of(&model, root_of_flow, 1);
+        for (size_t index = 0; index < count; index++)
+            store_surface(surfaces, index, peak);
+        return;
     }
+#pragma omp simd
+    for (size_t index = 0; index < count; index++)
+        store_surface(surfaces, index, surface_of(&model, root_of_flow, share[index]));
 }
 
 static bool update_stress(const void *constants, const struct material_batch *batch)

@@ -248,7 +248,7 @@ void principal_gather(struct stiffness stiffness, const struct material_batch *b
         decompose(stiffness, 6, principal);
 }
 
-/* Elastic strain of the returned stress into principal->strain's place, tensor by tensor. */
+/* The plastic strain increments between trial and returned stress. */
 TALUS_INLINE void find_flow(struct stiffness stiffness, const struct principal *principal,
                             struct principal_flow *flow)
 {
@@ -275,40 +275,62 @@ TALUS_INLINE void find_flow(struct stiffness stiffness, const struct principal *
     }
 }
 
-/* The tensor with principal values `mean` + d[index]. */
-TALUS_INLINE struct sym3 assemble(const struct principal *principal, size_t place, real mean,
-                                  const real d[3])
+/* Elastic strain of the returned stress, in place of that of the trial. */
+TALUS_INLINE void find_strain(struct stiffness stiffness, size_t components,
+                              struct principal *principal)
 {
-    struct sym3 sum = {mean, mean, mean, 0, 0, 0};
-    for (int index = 0; index < 3; index++) {
-        const real x = principal->axis[index][0][place];
-        const real y = principal->axis[index][1][place];
-        const real z = principal->axis[index][2][place];
-        const struct sym3 dyad = {x * x, y * y, z * z, x * y, y * z, x * z};
-        sum = sym3_add_scaled(sum, d[index], dyad);
+    const real shear = 1 / stiffness.shear;
+    const real bulk = 1 / stiffness.bulk;
+    const size_t count = whole_rows(principal->count);
+    real *strains[SYM3_COMPONENTS];
+    for (size_t component = 0; component < SYM3_COMPONENTS; component++)
+        strains[component] = principal->strain[component];
+#pragma omp simd
+    for (size_t place = 0; place < count; place++) {
+        const real mean =
+            (real)(1.0 / 3.0) * (principal->returned[0][place] + principal->returned[1][place] +
+                                 principal->returned[2][place]);
+        struct sym3 strain = {bulk * mean, bulk * mean, bulk * mean, 0, 0, 0};
+        for (int index = 0; index < 3; index++) {
+            const real x = principal->axis[index][0][place];
+            const real y = principal->axis[index][1][place];
+            const real z = principal->axis[index][2][place];
+            const struct sym3 dyad = {x * x, y * y, z * z, x * y, y * z, x * z};
+            const real deviator = shear * (principal->returned[index][place] - mean);
+            strain = sym3_add_scaled(strain, deviator, dyad);
+        }
+        components_store(strains, place, components, strain);
     }
-    return sum;
 }
 
-void principal_scatter(struct stiffness stiffness, const struct principal *principal,
-                       const struct material_batch *batch, struct principal_flow *flow)
+TALUS_INLINE void scatter(struct stiffness stiffness, size_t components,
+                          struct principal *principal, const struct material_batch *batch,
+                          const struct principal_flow *flow)
 {
-    find_flow(stiffness, principal, flow);
+    real *strains[SYM3_COMPONENTS];
+    for (size_t component = 0; component < SYM3_COMPONENTS; component++)
+        strains[component] = principal->strain[component];
+    find_strain(stiffness, components, principal);
     for (size_t place = 0; place < principal->used; place++) {
         if (!(flow->norm[place] > 0))
             continue;
         const size_t slot = principal->slot[place];
-        real d[3];
-        real mean = 0;
-        for (int index = 0; index < 3; index++)
-            mean += (real)(1.0 / 3.0) * principal->returned[index][place];
-        for (int index = 0; index < 3; index++)
-            d[index] = (principal->returned[index][place] - mean) / stiffness.shear;
-        const struct sym3 strain = assemble(principal, place, mean / stiffness.bulk, d);
-        components_store(batch->strain, slot, batch->component_count, strain);
-        components_store(batch->stress, slot, batch->component_count,
-                         elasticity_stress(stiffness, strain));
+        const struct sym3 strain = components_load(strains, place, components);
+        components_store(batch->strain, slot, components, strain);
+        components_store(batch->stress, slot, components, elasticity_stress(stiffness, strain));
         batch->plastic_strain[slot] = flow->norm[place];
         batch->dissipation[slot] = flow->dissipation[place];
     }
+}
+
+void principal_scatter(struct stiffness stiffness, struct principal *principal,
+                       const struct material_batch *batch, struct principal_flow *flow)
+{
+    find_flow(stiffness, principal, flow);
+    if (batch->component_count == 3)
+        scatter(stiffness, 3, principal, batch, flow);
+    else if (batch->component_count == 4)
+        scatter(stiffness, 4, principal, batch, flow);
+    else
+        scatter(stiffness, 6, principal, batch, flow);
 }

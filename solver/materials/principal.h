@@ -40,8 +40,8 @@ struct principal_flow {
 };
 
 /* Writes strain, stress, plastic strain and dissipation of the slots whose stress changed; the
- * others of the batch keep what they have. */
-void principal_scatter(struct stiffness stiffness, const struct principal *principal,
+ * others of the batch keep what they have. principal->strain holds the elastic strains then. */
+void principal_scatter(struct stiffness stiffness, struct principal *principal,
                        const struct material_batch *batch, struct principal_flow *flow);
 
 #endif

@@ -34,17 +34,15 @@ void softening_check(bool residual_given, double rate, struct material_issues *i
                            "softening_rate needs a residual strength to fall to");
 }
 
-void softening_shares(const struct softening *softening, const real *shear, size_t count,
+bool softening_shares(const struct softening *softening, const real *shear, size_t count,
                       real *share)
 {
     const real rate = (real)softening->rate;
     count = whole_rows(count);
-    if (rate == 0 || !number_bits(count, shear).nonzero) {
-        for (size_t index = 0; index < count; index++)
-            share[index] = 1;
-        return;
-    }
+    if (rate == 0 || !number_bits(count, shear).nonzero)
+        return false;
 #pragma omp simd
     for (size_t index = 0; index < count; index++)
         share[index] = elementary_exp(-rate * shear[index]);
+    return true;
 }

@@ -28,8 +28,9 @@ void decay_check(const char *key, double peak, double residual, struct material_
 /* Adds an issue if softening_rate stands without a residual value, or none with one. */
 void softening_check(bool residual_given, double rate, struct material_issues *issues);
 
-/* share[index] = exp(-rate x shear[index]), the share of the drop that is left, for count slots. */
-void softening_shares(const struct softening *softening, const real *shear, size_t count,
+/* share[index] = exp(-rate x shear[index]), the share of the drop that is left, for count slots;
+ * false, and nothing written, if all of them are at their peak, where the share is 1. */
+bool softening_shares(const struct softening *softening, const real *shear, size_t count,
                       real *share);
 
 #endif

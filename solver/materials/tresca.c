@@ -79,10 +79,10 @@ static void surfaces_of(const void *model, const real *shear, size_t count,
     const real drop = (real)(2.0 * tresca->cohesion.drop);
     MATERIAL_ALIGNED real share[MATERIAL_CHUNK];
     count = whole_rows(count);
-    softening_shares(&tresca->softening, shear, count, share);
+    const bool softened = softening_shares(&tresca->softening, shear, count, share);
     for (size_t index = 0; index < count; index++) {
         surfaces->slope[index] = surfaces->flow[index] = 1;
-        surfaces->strength[index] = residual + drop * share[index];
+        surfaces->strength[index] = residual + drop * (softened ? share[index] : 1);
         surfaces->limit[index] = (real)INFINITY;
     }
 }
