@@ -252,7 +252,8 @@ static void radial_vibration(void **state)
 
 /* A block that lands: particles change cells, and the books of force, hoop included, stay closed.
  */
-static void check_landing(enum talus_stress_update ordering, size_t shape)
+static void check_landing(enum talus_stress_update ordering, size_t shape,
+                          enum talus_anti_locking_control control)
 {
     struct simulation_fixture fixture;
     const double min[3] = {0, 0.05, 0}, max[3] = {0.8, 0.85, 0};
@@ -260,6 +261,7 @@ static void check_landing(enum talus_stress_update ordering, size_t shape)
     fixture.scene.gravity[1] = -10;
     fixture.scene.solver.stress_update = ordering;
     fixture.scene.solver.shape_index = shape;
+    fixture.scene.solver.anti_locking = control;
     if (ordering == TALUS_STRESS_LAST) /* it does not bear light nodes at larger steps */
         fixture.scene.solver.courant = 0.1;
     simulation_fixture_add_box(&fixture, 0, min, max, 2)->velocity[1] = -3.0;
@@ -282,20 +284,28 @@ static void landing(void **state)
     for (size_t shape = 0; shape < shape_count; shape++) {
         /* Elements on the axis have a node there whose lumped mass is zero: refused. */
         if (!shape_table[shape]->may_lump_negative)
-            check_landing(TALUS_STRESS_MODIFIED_LAST, shape);
+            check_landing(TALUS_STRESS_MODIFIED_LAST, shape, TALUS_CONTROL_NONE);
     }
 }
 
 static void landing_first(void **state)
 {
     (void)state;
-    check_landing(TALUS_STRESS_FIRST, 0);
+    check_landing(TALUS_STRESS_FIRST, 0, TALUS_CONTROL_NONE);
 }
 
 static void landing_last(void **state)
 {
     (void)state;
-    check_landing(TALUS_STRESS_LAST, 0);
+    check_landing(TALUS_STRESS_LAST, 0, TALUS_CONTROL_NONE);
+}
+
+static void landing_with_anti_locking(void **state)
+{
+    (void)state;
+    for (int control = TALUS_CONTROL_CELL; control <= (int)TALUS_CONTROL_HYBRID; control++)
+        check_landing(TALUS_STRESS_MODIFIED_LAST, 0, (enum talus_anti_locking_control)control);
+    check_landing(TALUS_STRESS_FIRST, 0, TALUS_CONTROL_NODE);
 }
 
 static void refused(struct simulation_fixture *fixture, const char *pointer)
@@ -336,6 +346,7 @@ int main(void)
         cmocka_unit_test(landing),
         cmocka_unit_test(landing_first),
         cmocka_unit_test(landing_last),
+        cmocka_unit_test(landing_with_anti_locking),
         cmocka_unit_test(refusals),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

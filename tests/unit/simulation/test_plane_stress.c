@@ -92,9 +92,14 @@ static void law_finite(void **state)
 static void anti_locking_leaves_the_plane(void **state)
 {
     (void)state;
-    for (int field = TALUS_FIT_VOLUMETRIC; field <= (int)TALUS_FIT_FULL_CONSTANT_VOLUME; field++) {
-        check_law(TALUS_STRAIN_SMALL, TALUS_CONTROL_CELL, (enum talus_anti_locking_field)field);
-        check_law(TALUS_STRAIN_FINITE, TALUS_CONTROL_CELL, (enum talus_anti_locking_field)field);
+    for (int control = TALUS_CONTROL_CELL; control <= (int)TALUS_CONTROL_HYBRID; control++) {
+        for (int field = TALUS_FIT_VOLUMETRIC; field <= (int)TALUS_FIT_FULL_CONSTANT_VOLUME;
+             field++) {
+            check_law(TALUS_STRAIN_SMALL, (enum talus_anti_locking_control)control,
+                      (enum talus_anti_locking_field)field);
+            check_law(TALUS_STRAIN_FINITE, (enum talus_anti_locking_control)control,
+                      (enum talus_anti_locking_field)field);
+        }
     }
 }
 
