@@ -75,7 +75,9 @@ void scene_advise_locking(struct scene_advice *advice)
 {
     const struct talus_scene *scene = advice->scene;
     char detail[160];
-    if (scene->solver.anti_locking != TALUS_CONTROL_NONE || scene->axis_count < 2)
+    /* In plane stress what does not go into the plane goes across it. */
+    if (scene->solver.anti_locking != TALUS_CONTROL_NONE || scene->axis_count < 2 ||
+        scene->dimension == TALUS_PLANE_STRESS)
         return;
     for (size_t index = 0; index < scene->material_count; index++) {
         const struct material *model = material_table[scene->materials[index].model_index];
@@ -102,7 +104,9 @@ void scene_advise_superfluous(struct scene_advice *advice)
         return;
     for (size_t index = 0; index < scene->material_count; index++) {
         const struct material *model = material_table[scene->materials[index].model_index];
-        if (model->plastic || poisson_ratio(&scene->materials[index]) > 0.4)
+        const bool stiff =
+            scene->dimension != TALUS_PLANE_STRESS && poisson_ratio(&scene->materials[index]) > 0.4;
+        if (model->plastic || stiff)
             return;
     }
     /* Fits of all components are against locking in bending, which every solid may do. */
@@ -204,9 +208,10 @@ void scene_advise_fine_grid(struct scene_advice *advice)
 json_t *scene_advice(const struct talus_scene *scene)
 {
     static void (*const advisers[])(struct scene_advice *) = {
-        scene_advise_uniform,   scene_advise_mirror,    scene_advise_time_step,
-        scene_advise_output,    scene_advise_locking,   scene_advise_superfluous,
-        scene_advise_fine_grid, scene_advise_particles, scene_advise_features,
+        scene_advise_uniform,     scene_advise_revolution, scene_advise_mirror,
+        scene_advise_time_step,   scene_advise_output,     scene_advise_locking,
+        scene_advise_superfluous, scene_advise_fine_grid,  scene_advise_particles,
+        scene_advise_features,
     };
     struct talus_estimate estimate;
     struct talus_error error = {.status = TALUS_OK};

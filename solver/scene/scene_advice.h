@@ -20,6 +20,7 @@ void scene_advise(struct scene_advice *advice, const char *pointer, const char *
 
 /* Where the scene models more than it needs. */
 void scene_advise_uniform(struct scene_advice *advice);
+void scene_advise_revolution(struct scene_advice *advice);
 void scene_advise_mirror(struct scene_advice *advice);
 void scene_advise_time_step(struct scene_advice *advice);
 void scene_advise_output(struct scene_advice *advice);

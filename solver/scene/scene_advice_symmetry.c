@@ -195,6 +195,9 @@ void scene_advise_mirror(struct scene_advice *advice)
             high = fmax(high, shape.max[axis]);
         }
         double centre = 0.5 * (low + high);
+        /* Across the radius of a body of revolution nothing mirrors. */
+        if (axis == 0 && scene->dimension == TALUS_AXISYMMETRIC)
+            continue;
         if (gravity_acts(scene, axis) || !is_mirror(scene, axis, centre))
             continue;
         char detail[128], change[128];

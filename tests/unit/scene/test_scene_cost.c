@@ -191,6 +191,58 @@ static void uniform_scenes_are_seen(void **state)
     assert_false(advises(scene, "/dimension", "uniform_axis"));
 }
 
+static json_t *revolution_scene(void)
+{
+    json_t *scene = fixture_scene(BASE_SOLID);
+    fixture_change(scene, "/gravity", "[0, -10, 0]");
+    fixture_change(scene, "/bodies/-",
+                   "{\"material\": \"rubber\", \"spacing\": [0.25, 0.25, 0.25],"
+                   " \"cylinder\": {\"from\": [5, 1, 5], \"to\": [5, 3, 5], \"radius\": 2}}");
+    fixture_change(scene, "/boundaries",
+                   "[{\"plane\": {\"point\": [0, 0, 0], \"normal\": [0, 1, 0]},"
+                   "  \"condition\": \"stick\"}]");
+    return scene;
+}
+
+static void bodies_of_revolution_are_seen(void **state)
+{
+    (void)state;
+    assert_true(advises(revolution_scene(), "/dimension", "body_of_revolution"));
+    json_t *scene = revolution_scene();
+    fixture_change(scene, "/bodies/1/cylinder/to", "[5.5, 3, 5]");
+    assert_false(advises(scene, "/dimension", "body_of_revolution"));
+    scene = revolution_scene();
+    fixture_change(scene, "/bodies/0/sphere/centre", "[5, 5, 5.5]");
+    assert_false(advises(scene, "/dimension", "body_of_revolution"));
+    scene = revolution_scene();
+    fixture_change(scene, "/gravity", "[1, -10, 0]");
+    assert_false(advises(scene, "/dimension", "body_of_revolution"));
+    scene = revolution_scene();
+    fixture_change(scene, "/boundaries/-",
+                   "{\"plane\": {\"point\": [5, 0, 0], \"normal\": [1, 0, 0]},"
+                   " \"condition\": \"slip\"}");
+    assert_false(advises(scene, "/dimension", "body_of_revolution"));
+    /* Across its radius a body of revolution has no mirror. */
+    scene = fixture_scene(BASE_AXIAL);
+    fixture_change(scene, "/bodies/0/sphere", NULL);
+    fixture_change(scene, "/bodies/0/box", "{\"min\": [0, 0.5], \"max\": [1, 1.5]}");
+    assert_false(advises(scene, "/grid", "mirror_symmetry"));
+}
+
+/* What is nearly incompressible gives way across the plane. */
+static void plane_stress_does_not_lock(void **state)
+{
+    (void)state;
+    json_t *scene = fixture_scene(BASE_AXIAL);
+    fixture_change(scene, "/materials/rubber/poisson_ratio", "0.49");
+    assert_true(advises(json_deep_copy(scene), "/solver/anti_locking/control", "locking"));
+    fixture_change(scene, "/dimension", "\"plane_stress\"");
+    fixture_change(scene, "/bodies/0/sphere/centre", "[1, 1]");
+    assert_false(advises(json_deep_copy(scene), "/solver/anti_locking/control", "locking"));
+    fixture_change(scene, "/solver", "{\"anti_locking\": {\"control\": \"cell\"}}");
+    assert_true(advises(scene, "/solver/anti_locking/control", "superfluous_anti_locking"));
+}
+
 static void mirror_images_are_seen(void **state)
 {
     (void)state;
@@ -231,6 +283,8 @@ int main(void)
         cmocka_unit_test(more_costs_more),
         cmocka_unit_test(advice_comes_and_goes),
         cmocka_unit_test(uniform_scenes_are_seen),
+        cmocka_unit_test(bodies_of_revolution_are_seen),
+        cmocka_unit_test(plane_stress_does_not_lock),
         cmocka_unit_test(mirror_images_are_seen),
         cmocka_unit_test(monstrous_scenes_are_refused_at_once),
     };
