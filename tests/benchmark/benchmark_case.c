@@ -58,5 +58,10 @@ const char *benchmark_shape_word(const struct benchmark_setup *setup)
 
 const char *benchmark_control_word(const struct benchmark_setup *setup)
 {
-    return setup->cell ? "cell" : "none";
+    return setup->control == NULL ? "none" : setup->control;
+}
+
+const char *benchmark_field_word(const struct benchmark_setup *setup)
+{
+    return setup->field == NULL ? "volumetric" : setup->field;
 }

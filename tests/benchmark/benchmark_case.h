@@ -37,7 +37,8 @@ struct benchmark_setup {
     int threads;
     const char *shape;    /* shape functions; NULL: linear */
     bool last;            /* stress_update "last", otherwise "modified_last" */
-    bool cell;            /* cell volumetric anti-locking */
+    const char *control;  /* of anti-locking; NULL: none */
+    const char *field;    /* that it fits; NULL: volumetric */
     double domain_factor; /* cells of the grid over cells of the body, at least */
     double courant;       /* share of the critical step; 0: the default of scenes */
     bool tracked;         /* also stores total and plastic strain, to look at them */
@@ -48,5 +49,6 @@ const char *benchmark_body_word(const struct benchmark_setup *setup);
 const char *benchmark_shape_word(const struct benchmark_setup *setup);
 const char *benchmark_ordering_word(const struct benchmark_setup *setup);
 const char *benchmark_control_word(const struct benchmark_setup *setup);
+const char *benchmark_field_word(const struct benchmark_setup *setup);
 
 #endif

@@ -17,7 +17,8 @@ static void print_usage(void)
         "                       [--precision double|single] [--isa I]\n"
         "       talus-benchmark --case NAME [--body compact|flow] [--particles N] [--per-axis N]\n"
         "                       [--threads T] [--shape NAME] [--ordering last|modified_last]\n"
-        "                       [--anti-locking none|cell] [--domain FACTOR] [--courant C]\n"
+        "                       [--anti-locking none|cell|node|hybrid] [--field NAME]\n"
+        "                       [--domain FACTOR] [--courant C]\n"
         "                       [--steps N] [--repeats N] [--precision double|single]\n"
         "                       [--isa x86-64-v4|x86-64-v3|x86-64-v2]\n"
         "cases:",
@@ -45,6 +46,13 @@ static bool read_word(const char *text, const char *const words[2], bool *second
     return *second || strcmp(text, words[0]) == 0;
 }
 
+static bool is_one_of(const char *text, const char *const *words)
+{
+    while (*words != NULL && strcmp(text, *words) != 0)
+        words++;
+    return *words != NULL;
+}
+
 static bool read_number(const char *text, double least, double *value)
 {
     char *end = NULL;
@@ -56,7 +64,6 @@ static bool read_option(struct benchmark_options *options, int letter, const cha
 {
     static const char *const bodies[2] = {"compact", "flow"};
     static const char *const orderings[2] = {"modified_last", "last"};
-    static const char *const controls[2] = {"none", "cell"};
     static const char *const precisions[2] = {"double", "single"};
     struct benchmark_setup *setup = &options->setup;
     size_t count = 1;
@@ -83,7 +90,12 @@ static bool read_option(struct benchmark_options *options, int letter, const cha
     case 'o':
         return read_word(text, orderings, &setup->last);
     case 'a':
-        return read_word(text, controls, &setup->cell);
+        setup->control = text;
+        return is_one_of(text, (const char *const[]){"none", "cell", "node", "hybrid", NULL});
+    case 'l':
+        setup->field = text;
+        return is_one_of(text,
+                         (const char *const[]){"volumetric", "full", "full_constant_volume", NULL});
     case 'd':
         return read_number(text, 1, &setup->domain_factor);
     case 'k':
@@ -118,17 +130,27 @@ static bool read_option(struct benchmark_options *options, int letter, const cha
 
 bool benchmark_options_read(int argument_count, char **arguments, struct benchmark_options *options)
 {
-    static const struct option known[] = {
-        {"case", required_argument, NULL, 'c'},      {"body", required_argument, NULL, 'b'},
-        {"particles", required_argument, NULL, 'n'}, {"per-axis", required_argument, NULL, 'p'},
-        {"threads", required_argument, NULL, 't'},   {"shape", required_argument, NULL, 'h'},
-        {"ordering", required_argument, NULL, 'o'},  {"anti-locking", required_argument, NULL, 'a'},
-        {"domain", required_argument, NULL, 'd'},    {"courant", required_argument, NULL, 'k'},
-        {"steps", required_argument, NULL, 's'},     {"repeats", required_argument, NULL, 'r'},
-        {"short", no_argument, NULL, 'S'},           {"full", no_argument, NULL, 'F'},
-        {"smoke", no_argument, NULL, 'M'},           {"csv", required_argument, NULL, 'v'},
-        {"results", required_argument, NULL, 'f'},   {"isa", required_argument, NULL, 'i'},
-        {"precision", required_argument, NULL, 'q'}, {NULL, 0, NULL, 0}};
+    static const struct option known[] = {{"case", required_argument, NULL, 'c'},
+                                          {"body", required_argument, NULL, 'b'},
+                                          {"particles", required_argument, NULL, 'n'},
+                                          {"per-axis", required_argument, NULL, 'p'},
+                                          {"threads", required_argument, NULL, 't'},
+                                          {"shape", required_argument, NULL, 'h'},
+                                          {"ordering", required_argument, NULL, 'o'},
+                                          {"anti-locking", required_argument, NULL, 'a'},
+                                          {"domain", required_argument, NULL, 'd'},
+                                          {"courant", required_argument, NULL, 'k'},
+                                          {"steps", required_argument, NULL, 's'},
+                                          {"repeats", required_argument, NULL, 'r'},
+                                          {"short", no_argument, NULL, 'S'},
+                                          {"full", no_argument, NULL, 'F'},
+                                          {"smoke", no_argument, NULL, 'M'},
+                                          {"csv", required_argument, NULL, 'v'},
+                                          {"results", required_argument, NULL, 'f'},
+                                          {"isa", required_argument, NULL, 'i'},
+                                          {"precision", required_argument, NULL, 'q'},
+                                          {"field", required_argument, NULL, 'l'},
+                                          {NULL, 0, NULL, 0}};
     int letter = 0;
     *options = (struct benchmark_options){
         .folder = ".",

@@ -140,9 +140,9 @@ static json_t *solver_json(const struct benchmark_setup *setup)
 {
     const bool compact = setup->body == BENCHMARK_COMPACT;
     json_t *solver =
-        json_pack("{s:s, s:s, s:{s:s}}", "shape", benchmark_shape_word(setup), "stress_update",
+        json_pack("{s:s, s:s, s:{s:s, s:s}}", "shape", benchmark_shape_word(setup), "stress_update",
                   compact ? benchmark_ordering_word(setup) : "modified_last", "anti_locking",
-                  "control", benchmark_control_word(setup));
+                  "control", benchmark_control_word(setup), "field", benchmark_field_word(setup));
     if (compact && setup->courant > 0)
         (void)json_object_set_new(solver, "courant", json_real(setup->courant));
     return solver;

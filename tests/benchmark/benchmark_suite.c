@@ -214,7 +214,7 @@ static bool run_anti_locking_sets(struct benchmark_suite *suite, const struct be
             struct benchmark_setup setups[2] = {base_setup(subject, plan->particles),
                                                 base_setup(subject, plan->particles)};
             setups[0].last = setups[1].last = last == 1;
-            setups[1].cell = true;
+            setups[1].control = "cell";
             if (!run_set(suite, BENCHMARK_ANTI_LOCKING, setups, 2, &plan->effort, false))
                 return false;
         }
