@@ -262,8 +262,7 @@ static void carry(struct run *run, struct block_scratch *scratch, uint32_t block
     }
     if (!still && (block->eliminates || !(reach.position <= 0.5)))
         collect_crossers(run, block, block_index, scratch, count, source, tile);
-    while (scratch->ahead.next < scratch->ahead.end)
-        fetch_portion(&scratch->ahead);
+    fetch_rest(&scratch->ahead);
     stage_clock_lap(scratch->clock, STAGE_MOVE);
     const struct shape_context context = run_shape_context(run, run->time_step);
     run->kernels->scatter(&context, block, source, run->scatters);

@@ -437,24 +437,34 @@ void kinematics_store(struct run *run, const struct particle_block *block,
     }
 }
 
-void kinematics_load(const struct run *run, const struct particle_block *block,
-                     struct block_scratch *scratch)
+void kinematics_reload(const struct run *run, const struct particle_block *block,
+                       struct block_scratch *scratch)
 {
     const size_t count = (size_t)block->row_count * LANE_COUNT;
     real *stored[6];
     reference_volumes(run, block, scratch, count);
-    volume_ratios(run, block, scratch, count);
     strain_arrays(run, block, stored);
-    for (uint32_t component = 0; component < run->stored_components; component++)
-        memcpy(scratch->strain[component], stored[component], count * sizeof(real));
+    if (run->any_rate)
+        volume_ratios(run, block, scratch, count);
     if (run->any_tensor && run->finite_strain)
         (void)log_strain_batch(count, run->strain_components, stored, scratch->strain);
+    for (uint32_t component = 0;
+         !(run->any_tensor && run->finite_strain) && component < run->stored_components;
+         component++)
+        memcpy(scratch->strain[component], stored[component], count * sizeof(real));
     for (size_t slot = 0; run->any_tensor && run->any_volumetric && slot < count; slot++) {
         if (material_of(run, block, slot)->model->volumetric)
             scratch->strain[0][slot] = stored[0][slot];
     }
     if (run->scene.dimension == TALUS_PLANE_STRESS)
         out_of_plane_strain(run, block, scratch, count);
+}
+
+void kinematics_load(const struct run *run, const struct particle_block *block,
+                     struct block_scratch *scratch)
+{
+    kinematics_reload(run, block, scratch);
+    volume_ratios(run, block, scratch, (size_t)block->row_count * LANE_COUNT);
 }
 
 /* det(1 + 2 e) - 1 without cancellation; in plane stress of the plane. */

@@ -27,6 +27,10 @@ void kinematics_traces(const struct run *run, const struct particle_block *block
 void kinematics_volumes(const struct run *run, const struct particle_block *block,
                         struct block_scratch *scratch);
 
+/* What kinematics_advance leaves in scratch for the materials but for rates, out of what it leaves
+ * in the particles. */
+void kinematics_reload(const struct run *run, const struct particle_block *block,
+                       struct block_scratch *scratch);
 /* Stored form -> strain of the materials, without motion (energies, frames). */
 void kinematics_load(const struct run *run, const struct particle_block *block,
                      struct block_scratch *scratch);

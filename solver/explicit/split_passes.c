@@ -32,6 +32,7 @@ static void fit_strain_tile(struct run *run, size_t index, struct block_scratch 
             continue;
         advance_strain(run, scratch, block, sums, still);
         anti_locking_scatter_strain(run, block, scratch);
+        fetch_rest(&scratch->ahead);
         stage_clock_lap(scratch->clock, STAGE_ANTI_LOCKING);
     }
     stage_clock_lap(scratch->clock, STAGE_SECOND_PASS);
@@ -50,7 +51,7 @@ static void reload_strain(struct run *run, struct block_scratch *scratch,
             out_of_plane_increment(run, block, scratch, count, time_step);
         kinematics_rates(run, scratch, count, time_step);
     }
-    kinematics_load(run, block, scratch);
+    kinematics_reload(run, block, scratch);
     stage_clock_lap(scratch->clock, STAGE_KINEMATICS);
 }
 
@@ -83,8 +84,10 @@ static void fit_stress_tile(struct run *run, size_t index, struct block_scratch 
             continue;
         reload_strain(run, scratch, block, still);
         advance_stress(run, scratch, block, sums, still);
-        if (fits_stress(run))
+        if (fits_stress(run)) {
+            fetch_rest(&scratch->ahead);
             continue;
+        }
         finish(run, scratch, block_index, tile, sums, still);
     }
     stage_clock_lap(scratch->clock, STAGE_SECOND_PASS);

@@ -66,6 +66,12 @@ TALUS_INLINE void fetch_portion(struct fetch_ahead *ahead)
     ahead->next = next;
 }
 
+TALUS_INLINE void fetch_rest(struct fetch_ahead *ahead)
+{
+    while (ahead->next < ahead->end)
+        fetch_portion(ahead);
+}
+
 /* Makes room for that many slots; contents are lost. 0, or -1 when memory ran out. */
 int block_scratch_reserve(struct block_scratch *scratch, size_t slots);
 void block_scratch_release(struct block_scratch *scratch);
