@@ -132,11 +132,15 @@ static void compare_all(struct talus_simulation *a, struct talus_simulation *b)
 }
 
 static void goes_on_bit_for_bit(size_t shape, enum talus_stress_update update,
-                                enum talus_dimension dimension)
+                                enum talus_dimension dimension,
+                                enum talus_anti_locking_control control)
 {
     struct simulation_fixture fixture;
     build(&fixture);
     fixture.scene.dimension = dimension;
+    fixture.scene.solver.anti_locking = control;
+    if (control == TALUS_CONTROL_HYBRID)
+        fixture.scene.solver.anti_locking_field = TALUS_FIT_FULL;
     fixture.scene.solver.shape_index = shape;
     fixture.scene.solver.stress_update = update;
     static const size_t moments[] = {0, 1, 17, 60, 111, 151, 200, 201, 239};
@@ -180,10 +184,13 @@ static void test_goes_on_bit_for_bit(void **state)
     for (size_t shape = 0; shape < shape_count; shape++) {
         if (shape_table[shape]->may_lump_negative)
             continue; /* for small displacements only: test_quadratic.c */
-        goes_on_bit_for_bit(shape, TALUS_STRESS_MODIFIED_LAST, TALUS_PLANE_STRAIN);
+        goes_on_bit_for_bit(shape, TALUS_STRESS_MODIFIED_LAST, TALUS_PLANE_STRAIN,
+                            TALUS_CONTROL_NONE);
     }
-    goes_on_bit_for_bit(0, TALUS_STRESS_FIRST, TALUS_PLANE_STRAIN);
-    goes_on_bit_for_bit(0, TALUS_STRESS_MODIFIED_LAST, TALUS_AXISYMMETRIC);
+    goes_on_bit_for_bit(0, TALUS_STRESS_FIRST, TALUS_PLANE_STRAIN, TALUS_CONTROL_NONE);
+    goes_on_bit_for_bit(0, TALUS_STRESS_MODIFIED_LAST, TALUS_AXISYMMETRIC, TALUS_CONTROL_NONE);
+    goes_on_bit_for_bit(0, TALUS_STRESS_MODIFIED_LAST, TALUS_PLANE_STRAIN, TALUS_CONTROL_HYBRID);
+    goes_on_bit_for_bit(0, TALUS_STRESS_FIRST, TALUS_AXISYMMETRIC, TALUS_CONTROL_NODE);
 }
 
 static void test_equal_states_give_equal_bytes(void **state)

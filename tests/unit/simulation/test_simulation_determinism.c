@@ -71,6 +71,22 @@ static void test_one_and_two_threads_of_every_shape(void **state)
     }
 }
 
+static void test_one_and_two_threads_of_every_fit(void **state)
+{
+    (void)state;
+    for (int control = TALUS_CONTROL_CELL; control <= TALUS_CONTROL_HYBRID; control++) {
+        for (int field = TALUS_FIT_VOLUMETRIC; field <= TALUS_FIT_FULL_CONSTANT_VOLUME; field++) {
+            struct simulation_fixture fixture;
+            build(&fixture, material_find("j2"), 2);
+            fixture.scene.solver.anti_locking = (enum talus_anti_locking_control)control;
+            fixture.scene.solver.anti_locking_field = (enum talus_anti_locking_field)field;
+            fixture.scene.solver.shape_index = (size_t)field % shape_count;
+            fixture.scene.solver.viscous_damping = 0.1;
+            compare_threads(&fixture);
+        }
+    }
+}
+
 /* Everything that can be read, after every step. */
 static void look(struct talus_simulation *simulation, double *row)
 {
@@ -124,6 +140,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_one_and_two_threads),
         cmocka_unit_test(test_one_and_two_threads_of_every_shape),
+        cmocka_unit_test(test_one_and_two_threads_of_every_fit),
         cmocka_unit_test(test_looking_changes_nothing),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
