@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 #include "materials/principal.h"
 
-#include "math/tensor_function.h"
+#include "math/principal_axes.h"
 
 #include <string.h>
 
@@ -12,13 +12,6 @@
 #else
 #define VALUE_DOUBT 1e-7
 #endif
-/* What keeps a division by nothing finite. */
-#ifdef TALUS_SINGLE
-#define LEAST 1e-30f
-#else
-#define LEAST 1e-280
-#endif
-
 struct extremes {
     real high, low;
 };
@@ -72,92 +65,8 @@ void principal_extremes(struct stiffness stiffness, const struct material_batch 
         extremes_kernel(stiffness, batch, 6, begin, count, high, low, doubt);
 }
 
-TALUS_INLINE struct vec3 cross(struct vec3 a, struct vec3 b)
-{
-    return (struct vec3){a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
-}
-
-TALUS_INLINE struct vec3 combined(real p, struct vec3 a, real q, struct vec3 b)
-{
-    return (struct vec3){p * a.x + q * b.x, p * a.y + q * b.y, p * a.z + q * b.z};
-}
-
-/* In numbers: as a choice of each component gcc leaves the loop scalar. */
-TALUS_INLINE struct vec3 longer(struct vec3 a, struct vec3 b)
-{
-    const real share = vec3_dot(a, a) < vec3_dot(b, b) ? (real)0 : (real)1;
-    return combined(share, a, 1 - share, b);
-}
-
-TALUS_INLINE struct vec3 sym3_apply(struct sym3 a, struct vec3 v)
-{
-    return (struct vec3){a.xx * v.x + a.xy * v.y + a.xz * v.z, a.xy * v.x + a.yy * v.y + a.yz * v.z,
-                         a.xz * v.x + a.yz * v.y + a.zz * v.z};
-}
-
-struct axis { /* a principal value and its axis */
-    real value;
-    struct vec3 along;
-};
-
-struct plane { /* tensor components in a plane with axes u and w */
-    struct vec3 u, w;
-    real uu, uw, ww;
-    real tangent, cosine; /* of the rotation to its principal axes (Jacobi) */
-};
-
-TALUS_INLINE struct plane plane_of(struct sym3 d, struct vec3 u, struct vec3 w)
-{
-    const struct vec3 along_u = sym3_apply(d, u);
-    const real uu = vec3_dot(u, along_u);
-    const real uw = vec3_dot(w, along_u);
-    const real ww = vec3_dot(w, sym3_apply(d, w));
-    const real half = (real)0.5 * (ww - uu);
-    const real radius = real_sqrt(half * half + uw * uw);
-    const real side = half < 0 ? -uw : uw;
-    const real tangent = side / maximum(real_absolute(half) + radius, LEAST);
-    return (struct plane){u, w, uu, uw, ww, tangent, 1 / real_sqrt(1 + tangent * tangent)};
-}
-
-TALUS_INLINE struct axis plane_first(struct plane plane)
-{
-    return (struct axis){plane.uu - plane.tangent * plane.uw,
-                         combined(plane.cosine, plane.u, -plane.tangent * plane.cosine, plane.w)};
-}
-
-TALUS_INLINE struct axis plane_second(struct plane plane)
-{
-    return (struct axis){plane.ww + plane.tangent * plane.uw,
-                         combined(plane.tangent * plane.cosine, plane.u, plane.cosine, plane.w)};
-}
-
-/* The axis of the value that lies apart, of a tensor d without trace and of size 1: the longest
- * column of the adjoint of d - value. */
-TALUS_INLINE struct axis apart(struct sym3 d)
-{
-    const real J2 = (real)0.5 * sym3_dot(d, d);
-    const real far = traceless_eigenvalues((struct invariants){J2, sym3_determinant(d)}).far;
-    const struct vec3 x = {d.xx - far, d.xy, d.xz};
-    const struct vec3 y = {d.xy, d.yy - far, d.yz};
-    const struct vec3 z = {d.xz, d.yz, d.zz - far};
-    const struct vec3 column = longer(longer(cross(x, y), cross(y, z)), cross(z, x));
-    const real scale = 1 / real_sqrt(vec3_dot(column, column));
-    const struct vec3 n = {scale * column.x, scale * column.y, scale * column.z};
-    return (struct axis){vec3_dot(n, sym3_apply(d, n)), n};
-}
-
-/* What is left across n: two axes without a branch (Duff et al. 2017), and d in their plane. */
-TALUS_INLINE struct plane across(struct sym3 d, struct vec3 n)
-{
-    const real sign = n.z < 0 ? (real)-1 : (real)1;
-    const real a = -1 / (sign + n.z);
-    const real b = n.x * n.y * a;
-    return plane_of(d, (struct vec3){1 + sign * n.x * n.x * a, sign * b, -sign * n.x},
-                    (struct vec3){b, sign + n.y * n.y * a, -n.y});
-}
-
 TALUS_INLINE void store_axis(struct principal *principal, size_t place, int index, real mean,
-                             real scale, struct axis axis)
+                             real scale, struct principal_axis axis)
 {
     principal->stress[index][place] = mean + scale * axis.value;
     principal->axis[index][0][place] = axis.along.x;
@@ -176,16 +85,18 @@ TALUS_INLINE void find_axes(struct stiffness stiffness, size_t components,
     for (size_t place = 0; place < count; place++) {
         const struct sym3 strain = components_load(strains, place, components);
         const struct sym3 deviator = sym3_deviator(strain);
-        const real size = maximum(sym3_norm(deviator), LEAST);
+        const real size = maximum(sym3_norm(deviator), PRINCIPAL_AXES_LEAST);
         const struct sym3 d = sym3_scale(1 / size, deviator);
         const real mean = stiffness.bulk * (real)(1.0 / 3.0) * sym3_trace(strain);
         const struct vec3 x = {1, 0, 0}, y = {0, 1, 0}, z = {0, 0, 1};
-        const struct axis first = components == 6 ? apart(d) : (struct axis){d.zz, z};
-        const struct plane plane = components == 6 ? across(d, first.along) : plane_of(d, x, y);
+        const struct principal_axis first =
+            components == 6 ? principal_apart(d) : (struct principal_axis){d.zz, z};
+        const struct principal_plane plane =
+            components == 6 ? principal_across(d, first.along) : principal_plane_of(d, x, y);
         const real scale = stiffness.shear * size;
         store_axis(principal, place, 0, mean, scale, first);
-        store_axis(principal, place, 1, mean, scale, plane_first(plane));
-        store_axis(principal, place, 2, mean, scale, plane_second(plane));
+        store_axis(principal, place, 1, mean, scale, principal_plane_first(plane));
+        store_axis(principal, place, 2, mean, scale, principal_plane_second(plane));
     }
 }
 

@@ -1,12 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Principal values and axes for the models that return in principal space: those slots of a chunk
- * that may flow are put side by side, so that the rest costs them nothing.
- *
- * Vectorised, without a special case for repeated values: of the three values of a tensor one lies
- * apart from the others, at least sqrt(3) times the size sqrt(J2/3) from them; its axis is well
- * determined whatever the others do. What is left across that axis is a tensor in a plane, which
- * one rotation makes diagonal. Every value is then n . A n of its axis, which errs by the square of
- * the axis's error only. */
+ * that may flow are put side by side, so that the rest costs them nothing. */
 #ifndef TALUS_PRINCIPAL_H
 #define TALUS_PRINCIPAL_H
 
