@@ -131,6 +131,14 @@ static void build(struct simulation_fixture *fixture, const char *shape, double 
         fixture->scene.solver.shape_index++;
 }
 
+static size_t first_slot(const struct particle_block *block)
+{
+    size_t slot = 0;
+    while (block->id[slot] == PARTICLE_NONE)
+        slot++;
+    return slot;
+}
+
 /* Warned of once, at the start or when it happens, and counted. */
 static void test_warnings(void **state)
 {
@@ -149,12 +157,13 @@ static void test_warnings(void **state)
     simulation = simulation_fixture_start(&fixture, 1);
     assert_false(talus_simulation_take_warning(simulation, &warning));
     struct particle_block *block = &simulation->run.grid.blocks[0];
-    particle_values(&simulation->run.grid.layout, block, PARTICLE_GRADIENT, 0)[0] = 0.5;
+    const size_t slot = first_slot(block);
+    particle_values(&simulation->run.grid.layout, block, PARTICLE_GRADIENT, 0)[slot] = 0.5;
     simulation_run_steps(simulation, 1);
     assert_true(talus_simulation_take_warning(simulation, &warning));
     assert_string_equal(warning.code, "domain_stretched");
     char number[32];
-    (void)snprintf(number, sizeof number, "number %u ", block->id[0]);
+    (void)snprintf(number, sizeof number, "number %u ", block->id[slot]);
     assert_non_null(strstr(warning.text, number));
     assert_true(simulation_metric(simulation, "domains.stretched") == 1);
     simulation_run_steps(simulation, 1);
@@ -177,9 +186,7 @@ static void test_initial_lengths(void **state)
         const struct sparse_grid *grid = &simulation->run.grid;
         const double expected[2] = {turned ? 0.25 / sqrt(2) : 0.25,
                                     turned ? 0.25 / sqrt(2) : 0.125};
-        size_t slot = 0;
-        while (grid->blocks[0].id[slot] == PARTICLE_NONE)
-            slot++;
+        const size_t slot = first_slot(&grid->blocks[0]);
         for (uint32_t axis = 0; axis < 2; axis++)
             assert_close(
                 particle_values(&grid->layout, &grid->blocks[0], PARTICLE_DOMAIN, axis)[slot],
