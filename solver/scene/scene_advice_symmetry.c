@@ -39,6 +39,7 @@ static bool bodies_fill(const struct talus_scene *scene, size_t axis, double ran
             range[1] = shape.max[axis];
         }
         if (scene->bodies[index].shape != TALUS_BODY_BOX || shape.turned ||
+            scene->bodies[index].traction_count > 0 ||
             scene->bodies[index].velocity_field != TALUS_VELOCITY_UNIFORM ||
             scene->bodies[index].velocity[axis] != 0.0 ||
             !near_scaled(scene, axis, shape.min[axis], range[0]) ||
@@ -112,7 +113,8 @@ static bool bodies_mirror(const struct talus_scene *scene, size_t axis, double c
     bool same = a->shape == b->shape && a->material_index == b->material_index &&
                 a->radius == b->radius && a->initial_stress == b->initial_stress &&
                 (a->shape == TALUS_BODY_BOX || a->shape == TALUS_BODY_SPHERE) && !first.turned &&
-                !second.turned && a->velocity_field == TALUS_VELOCITY_UNIFORM &&
+                !second.turned && a->traction_count == 0 && b->traction_count == 0 &&
+                a->velocity_field == TALUS_VELOCITY_UNIFORM &&
                 b->velocity_field == TALUS_VELOCITY_UNIFORM;
     for (size_t k = 0; k < scene->axis_count; k++) {
         double low = k == axis ? mirrored(second.max[k], centre) : second.min[k];

@@ -189,6 +189,29 @@ static void uniform_scenes_are_seen(void **state)
     scene = uniform_scene();
     fixture_change(scene, "/bodies/0/velocity", "[0, 0, 1]");
     assert_false(advises(scene, "/dimension", "uniform_axis"));
+    static const char *const keys[] = {"velocity", "traction", "rotate"};
+    static const char *const values[] = {
+        "{\"rotation\": {\"about\": [5, 0, 5], \"rate\": [0, 1, 0]}}",
+        "[{\"face\": \"z_max\", \"pressure\": 1}]",
+        "{\"angle\": 180, \"about\": [5, 2, 5], \"axis\": [0, 1, 0]}"};
+    for (size_t index = 0; index < sizeof keys / sizeof keys[0]; index++) {
+        char pointer[32];
+        (void)snprintf(pointer, sizeof pointer, "/bodies/0/%s", keys[index]);
+        for (int symmetry = 0; symmetry < 2; symmetry++) {
+            scene = uniform_scene();
+            fixture_change(scene, pointer, values[index]);
+            assert_false(advises(scene, symmetry == 0 ? "/dimension" : "/grid",
+                                 symmetry == 0 ? "uniform_axis" : "mirror_symmetry"));
+        }
+    }
+    scene = uniform_scene();
+    fixture_change(scene, "/gravity", "[0, -10, [[0, 0], [1, 2]]]");
+    assert_false(advises(scene, "/dimension", "uniform_axis"));
+    scene = uniform_scene();
+    fixture_change(scene, "/gravity",
+                   "{\"magnitude\": 10, \"up\": [0, 1, 0], \"slopes\": ["
+                   "{\"along\": [0, 0, 1], \"below\": 3, \"angle\": 10}]}");
+    assert_false(advises(scene, "/dimension", "uniform_axis"));
 }
 
 static json_t *revolution_scene(void)

@@ -8,9 +8,15 @@
 enum { STEPS = 240 };
 
 /* A wet heap slides off a shelf with friction into a sink that eats it: cells are crossed, blocks
- * come and go, particles are eliminated; two materials, a running mean, probes. */
+ * come and go, particles are eliminated; two materials, a running mean, probes;
+ * gravity that varies over time and a pressure that follows the surface. */
 static void build(struct simulation_fixture *fixture)
 {
+    static double times[] = {0.0, 0.01}, pulls[] = {-9.81, -12.0}, pressures[] = {0.0, 500.0};
+    static struct talus_traction push = {
+        .kind = TALUS_TRACTION_NORMAL,
+        .is_pressure = true,
+        .table = {{.count = 2, .time = times, .value = pressures}}};
     static const int64_t count[3] = {60, 20, 1};
     simulation_fixture_init(fixture, 2, 0.1, count);
     struct talus_scene *scene = &fixture->scene;
@@ -21,6 +27,9 @@ static void build(struct simulation_fixture *fixture)
     simulation_fixture_add_box(fixture, water, (double[3]){1.0, 0.8}, (double[3]){2.2, 1.2}, 2)
         ->velocity[0] = 9.0;
     scene->gravity[1] = -9.81;
+    scene->gravity_table[1] = (struct talus_time_table){.count = 2, .time = times, .value = pulls};
+    fixture->bodies[0].tractions = &push;
+    fixture->bodies[0].traction_count = 1;
     scene->solver.pic_rate = 1.0;
     scene->solver.viscous_damping = 0.1;
     scene->output.frame_fields = 1u << TALUS_FIELD_STRESS | 1u << TALUS_FIELD_DISPLACEMENT;
@@ -253,6 +262,14 @@ static void test_refused_for_another_scene(void **state)
     assert_refused(&other.scene, &saved);
     build(&other);
     other.scene.solver.stress_update = TALUS_STRESS_LAST;
+    assert_refused(&other.scene, &saved);
+    build(&other);
+    struct talus_traction changed = other.bodies[0].tractions[0];
+    changed.kind = TALUS_TRACTION_FIBRE;
+    other.bodies[0].tractions = &changed;
+    assert_refused(&other.scene, &saved);
+    build(&other);
+    other.scene.gravity_table[1].count = 1;
     assert_refused(&other.scene, &saved);
     build(&other);
     other.bodies[0].velocity[0] = 1;
