@@ -5,6 +5,7 @@
 #include "explicit/run.h"
 #include "state/time_table.h"
 
+#include <assert.h>
 #include <math.h>
 
 void run_set_gravity(struct run *run)
@@ -44,6 +45,8 @@ static void add_slopes(const void *source, const struct run *run,
     const struct talus_scene *scene = source;
     double up[3], magnitude = 0;
     (void)time;
+    const size_t axes = run->grid.domain.axis_count;
+    assert(axes <= 3);
     for (size_t axis = 0; axis < 3; axis++)
         magnitude = hypot(magnitude, scene->gravity[axis]);
     for (size_t axis = 0; axis < 3; axis++)
@@ -57,7 +60,7 @@ static void add_slopes(const void *source, const struct run *run,
         if (slope == NULL)
             continue;
         const double angle = slope->angle_deg * radians_per_degree;
-        for (size_t axis = 0; axis < run->grid.domain.axis_count; axis++)
+        for (size_t axis = 0; axis < axes; axis++)
             acceleration[axis][slot] +=
                 (real)(magnitude * (sin(angle) * slope->along[axis] + (1 - cos(angle)) * up[axis]));
     }

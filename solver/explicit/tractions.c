@@ -6,6 +6,7 @@
 #include "state/time_table.h"
 #include "state/traction_layout.h"
 
+#include <assert.h>
 #include <math.h>
 #include <string.h>
 
@@ -97,12 +98,14 @@ static void add_load(const struct run *run, const struct particle_block *block, 
                      size_t end, size_t body, const struct load *load, real *const acceleration[3])
 {
     const real *mass = particle_values(&run->grid.layout, block, PARTICLE_MASS, 0);
+    const size_t axes = run->grid.domain.axis_count;
+    assert(axes <= 3);
     for (size_t slot = begin; slot < end; slot++) {
         double force[3];
         if (!(mass[slot] > 0) || (block->body != NULL && block->body[slot] != body) ||
             !force_on(run, block, slot, load, force))
             continue;
-        for (size_t axis = 0; axis < run->grid.domain.axis_count; axis++)
+        for (size_t axis = 0; axis < axes; axis++)
             acceleration[axis][slot] += (real)(force[axis] / (double)mass[slot]);
     }
 }

@@ -113,33 +113,41 @@ static enum talus_status check_inside_grid(const struct talus_scene *scene, size
     return TALUS_OK;
 }
 
+/* Particles of a row of the lattice that lie in the box; all of them are added to *count. */
+static uint64_t row_in_box(const struct seeding_lattice *lattice, const struct talus_boundary *box,
+                           uint64_t index[3], uint64_t *count)
+{
+    struct seeding_row row;
+    uint64_t inside = 0;
+    seeding_lattice_row(lattice, index, &row);
+    for (size_t range = 0; range < row.count; range++) {
+        for (index[0] = row.first[range]; index[0] < row.end[range]; index[0]++) {
+            double place[3];
+            bool within = true;
+            seeding_lattice_world(lattice, index, place);
+            for (size_t k = 0; k < lattice->shape.axis_count; k++)
+                within &= place[k] > box->box_min[k] && place[k] < box->box_max[k];
+            inside += within;
+        }
+        *count += row.end[range] - row.first[range];
+    }
+    return inside;
+}
+
 /* Share of the particles that lie in the box: of bodies whose volume in it has no simple form. */
 static double share_of_particles(const struct talus_scene *scene, size_t body_index,
                                  const struct talus_boundary *box)
 {
     struct seeding_lattice lattice;
-    struct seeding_row row;
-    uint64_t index[3], inside = 0, all = 0;
+    uint64_t index[3], inside = 0, count = 0;
     seeding_lattice_init(&lattice, scene, &scene->bodies[body_index]);
     if (seeding_lattice_point_count(&lattice) > 16.0 * row_limit(scene))
         return 0.0;
     for (index[2] = 0; index[2] < (uint64_t)lattice.count[2]; index[2]++) {
-        for (index[1] = 0; index[1] < (uint64_t)lattice.count[1]; index[1]++) {
-            seeding_lattice_row(&lattice, index, &row);
-            for (size_t range = 0; range < row.count; range++) {
-                for (index[0] = row.first[range]; index[0] < row.end[range]; index[0]++) {
-                    double place[3];
-                    bool within = true;
-                    seeding_lattice_world(&lattice, index, place);
-                    for (size_t k = 0; k < scene->axis_count; k++)
-                        within &= place[k] > box->box_min[k] && place[k] < box->box_max[k];
-                    inside += within;
-                    all++;
-                }
-            }
-        }
+        for (index[1] = 0; index[1] < (uint64_t)lattice.count[1]; index[1]++)
+            inside += row_in_box(&lattice, box, index, &count);
     }
-    return all > 0 ? (double)inside / (double)all : 0.0;
+    return count > 0 ? (double)inside / (double)count : 0.0;
 }
 
 static double share_in_box(const struct talus_scene *scene, size_t body_index,
