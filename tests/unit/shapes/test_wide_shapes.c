@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Shapes that reach beyond their cell, against their definitions, at walls, and in motion. */
 #include "shapes/shape.h"
+#include "simulation/simulation_private.h"
 #include "simulation_fixture.h"
 #include "state/sparse_grid.h"
 #include "state/wide_window.h"
@@ -243,7 +244,55 @@ static void test_nothing_reaches_behind_walls(void **state)
     }
 }
 
-/* ---- bodies in motion ---- */
+/* ---- bodies ---- */
+
+/* Largest force on a node inside of a bar under uniform stress, over that stress, where particles
+ * are 3/7 of a cell apart: a body at rest, whose particles lie differently in every cell. */
+static double largest_imbalance(const char *name)
+{
+    const double stress = -1e4;
+    struct simulation_fixture fixture;
+    simulation_fixture_init(&fixture, 1, 0.1, (const int64_t[3]){20, 1, 1});
+    const size_t material =
+        simulation_fixture_add_sample(&fixture, material_find("linear_elastic"));
+    struct talus_body *body =
+        simulation_fixture_add_box(&fixture, material, (double[3]){0.33}, (double[3]){1.53}, 1);
+    body->lattice = TALUS_LATTICE_COUNT;
+    body->lattice_value[0] = 28;
+    body->initial_stress = TALUS_INITIAL_GIVEN;
+    body->stress[0] = body->stress[1] = body->stress[2] = stress;
+    while (strcmp(shape_table[fixture.scene.solver.shape_index]->name, name) != 0)
+        fixture.scene.solver.shape_index++;
+    struct talus_simulation *simulation = simulation_fixture_start(&fixture, 1);
+    const struct node_blocks *nodes = &simulation->run.grid.nodes;
+    double largest = 0;
+    for (size_t block = 0; block < nodes->count; block++) {
+        for (int32_t lane = 0; lane < LANE_COUNT; lane++) {
+            const int32_t node = nodes->place[block][0] + lane;
+            if (node >= 6 && node <= 13)
+                largest = fmax(largest,
+                               fabs((double)node_values(nodes, block, nodes->layout.force)[lane]));
+        }
+    }
+    talus_simulation_destroy(simulation);
+    return largest / fabs(stress);
+}
+
+/* Boxes tile the bar, so that gimp integrates exactly. What points at a distance d of cells leave
+ * of a spline of degree n is, by Poisson's sum, 4 pi f |sin(pi f) / (pi f)|^(n + 1) with f = 1/d,
+ * and of the shorter waves less than a quarter of it. */
+static void test_uniform_stress_is_in_balance(void **state)
+{
+    (void)state;
+    const double pi = 3.14159265358979323846, wave = 7.0 / 3.0;
+    const double decay = fabs(sin(pi * wave) / (pi * wave));
+    const double strain_rounding = sizeof(real) == sizeof(double) ? 1e-12 : 1e-3;
+    assert_true(largest_imbalance("linear") > 4 * pi * wave * pow(decay, 2) / 2);
+    assert_true(largest_imbalance("gimp") < strain_rounding);
+    assert_true(largest_imbalance("gimp_scaled") < strain_rounding);
+    assert_true(largest_imbalance("bspline2") < 4 * pi * wave * pow(decay, 3) * 1.25);
+    assert_true(largest_imbalance("bspline3") < 4 * pi * wave * pow(decay, 4) * 1.25);
+}
 
 /* A body that flies and spins through cells keeps its momentum to rounding, with every shape; its
  * particles leave their cells in many steps. */
@@ -283,6 +332,7 @@ int main(void)
         cmocka_unit_test(test_weights_follow_their_definitions),
         cmocka_unit_test(test_slopes_are_derivatives),
         cmocka_unit_test(test_nothing_reaches_behind_walls),
+        cmocka_unit_test(test_uniform_stress_is_in_balance),
         cmocka_unit_test(test_momentum_in_flight),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
