@@ -50,6 +50,11 @@ enum talus_stress_update {
 };
 enum talus_gimp_scaling { TALUS_GIMP_VOLUME, TALUS_GIMP_STRETCH };
 enum talus_strain { TALUS_STRAIN_FINITE, TALUS_STRAIN_SMALL };
+enum talus_small_mass {
+    TALUS_SMALL_MASS_NONE,
+    TALUS_SMALL_MASS_CUTOFF,
+    TALUS_SMALL_MASS_REDISTRIBUTE
+};
 enum talus_precision { TALUS_PRECISION_DOUBLE, TALUS_PRECISION_SINGLE };
 enum talus_anti_locking_control {
     TALUS_CONTROL_NONE,
@@ -89,12 +94,13 @@ struct talus_solver_options {
     enum talus_anti_locking_field anti_locking_field;
     enum talus_anti_locking_apply anti_locking_apply;
     enum talus_anti_locking_averaging anti_locking_averaging;
-    double viscous_damping;         /* C [-] of the viscous stress C rho h c tr(d) 1 */
-    double local_damping;           /* [-] share of the out-of-balance force */
-    double force_ramp;              /* [s]; 0: none */
-    double settle_time;             /* [s] before t = 0, in which walls stand still; 0: none */
-    double settle_damping;          /* c [1/s] of that time: velocities fall by exp(-c dt) */
-    enum talus_precision precision; /* of particles, nodes and kernels */
+    double viscous_damping;           /* C [-] of the viscous stress C rho h c tr(d) 1 */
+    double local_damping;             /* [-] share of the out-of-balance force */
+    enum talus_small_mass small_mass; /* what becomes of the pull at nodes of little mass */
+    double force_ramp;                /* [s]; 0: none */
+    double settle_time;               /* [s] before t = 0, in which walls stand still; 0: none */
+    double settle_damping;            /* c [1/s] of that time: velocities fall by exp(-c dt) */
+    enum talus_precision precision;   /* of particles, nodes and kernels */
 };
 
 struct talus_material {

@@ -288,6 +288,10 @@ void run_kick_nodes(struct run *run);
 void run_start_nodes(struct run *run);
 void run_update_nodes(struct run *run);
 
+/* ---- small_mass.c ---- */
+/* Internal forces of nodes that carry hardly any mass, once they are complete. */
+void run_treat_light_nodes(struct run *run);
+
 /* ---- start_velocity.c ---- */
 /* Makes room at the nodes for the velocity at the start of a step, if the scene needs it. */
 void run_keep_start_velocity(struct run *run);

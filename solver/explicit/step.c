@@ -94,6 +94,8 @@ static void take_passes(struct run *run, struct stage_clock *clock)
     const bool first = run->scene.solver.stress_update == TALUS_STRESS_FIRST;
     const struct talus_solver_options *options = &run->scene.solver;
     run->pic_share = transfer_of(options)->pic_share(options, run->time_step);
+    if (!first)
+        run_treat_light_nodes(run);
     if (run_kicks(run)) {
         run_kick_nodes(run);
         stage_clock_lap(clock, STAGE_KICK_NODES);
@@ -106,6 +108,7 @@ static void take_passes(struct run *run, struct stage_clock *clock)
         else
             run_pass(run, stress_tile);
         run->audit.hoop_force = sum_tiles(run).hoop_force;
+        run_treat_light_nodes(run);
     }
     run_update_nodes(run);
     stage_clock_lap(clock, STAGE_UPDATE_NODES);

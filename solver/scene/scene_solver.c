@@ -27,8 +27,7 @@ static const char *const control_words[] = {"none", "cell", "node", "hybrid", NU
 static const char *const field_words[] = {"volumetric", "full", "full_constant_volume", NULL};
 static const char *const apply_words[] = {"strain_and_stress", "strain", NULL};
 static const char *const averaging_words[] = {"weighted", "unweighted_sums", "unweighted", NULL};
-static const char *const small_mass_words[] = {"none", NULL};
-static const char *const small_mass_lacking[] = {"cutoff", "redistribute", NULL};
+static const char *const small_mass_words[] = {"none", "cutoff", "redistribute", NULL};
 static const char *const precision_words[] = {"double", "single", NULL};
 
 static const struct scene_field anti_locking_fields[] = {
@@ -128,9 +127,9 @@ static const struct scene_field stabilise_fields[] = {
      .kind = SCENE_CHOICE,
      .unit = "1",
      .choices = small_mass_words,
-     .lacking = small_mass_lacking,
-     .offset = SCENE_NOWHERE,
-     .meaning = "treatment of nodes with little mass"},
+     .offset = AT(small_mass),
+     .meaning = "internal force of nodes below a tenth of a particle's mass: kept, dropped, or "
+                "given to the nodes around them"},
     {.key = "front_smoothing", .unsupported = true},
     {.key = "settle",
      .kind = SCENE_OBJECT,

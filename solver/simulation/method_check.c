@@ -98,6 +98,19 @@ static enum talus_status check_theta(const struct talus_scene *scene, struct tal
     return TALUS_OK;
 }
 
+/* Neighbours take the force of a node only where they share every cell with it. */
+static enum talus_status check_small_mass(const struct talus_scene *scene,
+                                          struct talus_error *error)
+{
+    const struct shape *shape = shape_table[scene->solver.shape_index];
+    if (scene->solver.small_mass != TALUS_SMALL_MASS_REDISTRIBUTE || shape->light_nodes)
+        return TALUS_OK;
+    return talus_error_set(error, TALUS_INVALID, "contradiction", "/solver/stabilise/small_mass",
+                           "the pull of a particle at the nodes of shape \"%s\" shrinks with their "
+                           "mass: there is nothing to redistribute",
+                           shape->name);
+}
+
 enum talus_status method_check(const struct talus_scene *scene, struct talus_error *error)
 {
     enum talus_status status = check_share(scene, error);
@@ -109,5 +122,7 @@ enum talus_status method_check(const struct talus_scene *scene, struct talus_err
         status = check_elements(scene, error);
     if (status == TALUS_OK)
         status = check_theta(scene, error);
+    if (status == TALUS_OK)
+        status = check_small_mass(scene, error);
     return status;
 }
