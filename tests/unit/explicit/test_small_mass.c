@@ -9,7 +9,7 @@ static const struct setting elastic[] = {
 static void build(struct simulation_fixture *fixture, size_t axes, enum talus_small_mass treatment)
 {
     static const int64_t count[3] = {20, 20, 20};
-    static const double min[3] = {0.5755, 0.5755, 0.5755}, max[3] = {0.8755, 0.8755, 0.8755};
+    static const double min[3] = {0.5255, 0.5255, 0.5255}, max[3] = {0.8255, 0.8255, 0.8255};
     simulation_fixture_init(fixture, axes, 0.1, count);
     const size_t material =
         simulation_fixture_add_material(fixture, "linear_elastic", elastic, LENGTH(elastic));
