@@ -76,12 +76,13 @@ class Beam:
                 abs(self.stress(0.0, 0.0, self.amplitude)[1]))
 
 
-def scene(title, dimension, moduli, cell, time_step, duration, anti_locking, frames):
+def scene(title, dimension, moduli, cell, time_step, duration, anti_locking, frames,
+          control="cell"):
     """`cell`: one number, or one an axis; 2 x 2 particles a cell. anti_locking: a field, or None."""
     widths = cell if isinstance(cell, list) else [cell, cell]
     solver = {"time_step": time_step, "strain": "small"}
     if anti_locking:
-        solver["anti_locking"] = {"control": "cell", "field": anti_locking}
+        solver["anti_locking"] = {"control": control, "field": anti_locking}
     return {
         "title": title,
         "dimension": dimension,
