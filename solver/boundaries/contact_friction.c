@@ -21,7 +21,7 @@ static struct wall_grip grip_of(const struct contact *contact, size_t place)
     };
 }
 
-/* What the active faces can do against sliding. */
+/* What the active faces can do against sliding. Of the faces, those of the node are filled in. */
 struct resistance {
     double limit[NODE_FACE_MAX], drag[NODE_FACE_MAX]; /* [N s], [N s / (m/s)^2] */
     double limit_sum, drag_sum;
@@ -31,9 +31,11 @@ struct resistance {
 static void find_resistance(const struct contact *contact, const bool active[NODE_FACE_MAX],
                             struct resistance *resistance)
 {
-    memset(resistance, 0, sizeof *resistance);
+    resistance->limit_sum = resistance->drag_sum = 0;
+    resistance->unlimited = 0;
     for (size_t place = 0; place < contact->node->count; place++) {
         const struct boundary_condition *condition = contact_face(contact, place)->condition;
+        resistance->limit[place] = resistance->drag[place] = 0;
         if (!active[place] || condition->tangential_limit == NULL)
             continue;
         const struct wall_face *face = contact_face(contact, place);
@@ -79,12 +81,13 @@ static void find_frame(const struct contact *contact, const struct resistance *r
     bool moves = false;
     memset(frame, 0, 3 * sizeof *frame);
     for (size_t place = 0; place < contact->node->count; place++) {
+        const struct wall_face *face = contact_face(contact, place);
+        if (!face->moves)
+            continue;
         const double part = part_of(resistance, place, 1.0);
-        for (size_t axis = 0; axis < 3 && part > 0; axis++) {
-            const double speed = contact_face_speed(contact, contact_face(contact, place), axis);
-            mean[axis] += part * speed;
-            moves = moves || speed != 0;
-        }
+        moves = true;
+        for (size_t axis = 0; axis < 3; axis++)
+            mean[axis] += part * contact_face_speed(contact, face, axis);
     }
     for (size_t axis = 0; axis < 3 && moves; axis++) {
         frame[axis] = mean[axis];
@@ -93,11 +96,22 @@ static void find_frame(const struct contact *contact, const struct resistance *r
     }
 }
 
+static bool any_rubs(const struct contact *contact, const bool active[NODE_FACE_MAX])
+{
+    bool rubs = false;
+    for (size_t place = 0; place < contact->node->count; place++)
+        rubs = rubs ||
+               (active[place] && contact_face(contact, place)->condition->tangential_limit != NULL);
+    return rubs;
+}
+
 void contact_apply_friction(struct contact *contact, const bool active[NODE_FACE_MAX],
                             const struct span *span, const double tangent[3])
 {
     struct resistance resistance;
     double frame[3], sliding[3];
+    if (!any_rubs(contact, active))
+        return;
     find_resistance(contact, active, &resistance);
     if (resistance.limit_sum == 0 && resistance.drag_sum == 0 && resistance.unlimited == 0)
         return;
