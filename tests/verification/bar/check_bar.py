@@ -14,7 +14,7 @@ def modulus(dimension, poisson):
     return YOUNG * (1 - poisson) / ((1 + poisson) * (1 - 2 * poisson))
 
 
-def scene(dimension, cells, poisson, periods):
+def scene(dimension, cells, poisson, periods, update="modified_last"):
     axes = {"line": 1, "solid": 3}[dimension]
     cell, spacing = LENGTH / cells, LENGTH / cells / 2
     speed = math.sqrt(modulus(dimension, poisson) / DENSITY)
@@ -27,10 +27,11 @@ def scene(dimension, cells, poisson, periods):
         points, [spacing] * axes, "metal",
         lambda c: [TIP_SPEED * math.sin(math.pi * c[0] / (2 * LENGTH))] + [0.0] * (axes - 1))
     return {
-        "title": f"bar, {dimension}, {cells} cells",
+        "title": f"bar, {dimension}, {cells} cells, {update}",
         "dimension": dimension,
         "duration": periods * 4 * LENGTH / speed,
         "grid": {"cell": cell, "min": [0] * axes, "max": [LENGTH + cell] + [cell] * (axes - 1)},
+        "solver": {"stress_update": update},
         "materials": {"metal": {"model": "linear_elastic", "density": DENSITY,
                                 "young_modulus": YOUNG, "poisson_ratio": poisson}},
         "bodies": bodies,
@@ -65,8 +66,8 @@ def period(run):
     return (low + high) / 2
 
 
-def check(verification, dimension, cells, poisson, periods=4):
-    run = verification.run(scene(dimension, cells, poisson, periods))
+def check(verification, dimension, cells, poisson, periods=4, update="modified_last"):
+    run = verification.run(scene(dimension, cells, poisson, periods, update))
     run.wave_speed_squared = modulus(dimension, poisson) / DENSITY
     exact = 4 * LENGTH / math.sqrt(run.wave_speed_squared)
     return period(run) / exact - 1, run
@@ -82,6 +83,12 @@ for cells in resolutions:
 verification.below(f"one dimension, {resolutions[2]} cells: error of the period", errors[2], 0.01)
 order = math.log(errors[0] / errors[3]) / math.log(resolutions[3] / resolutions[0])
 verification.above("one dimension: order of convergence of the period, 5 to 40 cells", order, 1.8)
+for update in ("first", "last"):
+    coarse, fine = (abs(check(verification, "line", cells, POISSON, update=update)[0])
+                    for cells in (5, 40))
+    verification.below(f"one dimension, 40 cells, {update}: error of the period", fine, 0.0025)
+    verification.above(f"one dimension, {update}: order of convergence of the period, 5 to 40 cells",
+                       math.log(coarse / fine) / math.log(8), 1.8)
 error, run = check(verification, "solid", 10, 0.0)
 verification.below("three dimensions, 10 cells, nu = 0: error of the period", abs(error), 0.01)
 line_error, _ = check(verification, "line", 10, 0.0)
