@@ -3,7 +3,7 @@
 """The largest Courant number c dt / h at which each method stays stable, found by bisection.
 
 Every combination of shape function, transfer, stress ordering and anti-locking that Talus offers is
-run on four small free bodies whose parts start with slightly different velocities, so that waves of
+run on five small free bodies whose parts start with slightly different velocities, so that waves of
 all lengths run through them. The step is unstable if the energy grows from the first third of the run to
 the last. README.md has the bodies and how to read the map.
 
@@ -33,31 +33,37 @@ ANTI_LOCKING = {
     "node volumetric": {"control": "node", "field": "volumetric"},
     "hybrid full": {"control": "hybrid", "field": "full"},
 }
-BODIES = ["uniform", "edge", "incompressible", "solid"]
+BODIES = ["uniform", "edge", "incompressible", "solid", "fluid"]  # the last two in 3D
 COLUMNS = ["shape", "transfer", "stress_update", "anti_locking"] + BODIES + ["limit"]
 
 STEPS = 1500
 GROWTH = 1.25  # of the energy from the first third to the last: 2e-4 a step is found
-RESOLUTION = 0.02  # of the bisection, relative
+RESOLUTION = 0.03  # of the bisection, relative
+HINT = 1.1
 LOWEST, HIGHEST = 0.01, 4.0
 CELL = 0.1
 DENSITY = 1000.0
-YOUNG = 1e6
+STIFFNESS = 1e6
 
 
-def wave_speed(ratio):
-    """Of longitudinal waves, and in plane strain too."""
-    return (YOUNG * (1 - ratio) / ((1 + ratio) * (1 - 2 * ratio)) / DENSITY) ** 0.5
+def material(body):
+    if body == "fluid":
+        return {"model": "newtonian_fluid", "density": DENSITY, "bulk_modulus": STIFFNESS}
+    return {"model": "linear_elastic", "density": DENSITY, "young_modulus": STIFFNESS,
+            "poisson_ratio": 0.49 if body == "incompressible" else 0.3}
 
 
-def poisson_ratio(body):
-    return 0.49 if body == "incompressible" else 0.3
+def wave_speed(body):
+    """Of longitudinal waves, which plane strain does not change."""
+    made = material(body)
+    ratio = made.get("poisson_ratio", 0)
+    return (STIFFNESS * (1 - ratio) / ((1 + ratio) * (1 - 2 * ratio)) / DENSITY) ** 0.5
 
 
 def parts(body):
     """Boxes in cells, and what they start with. The edge body lies a thousandth of a cell over the
     grid lines: its outermost particles have just entered cells of their own."""
-    if body == "solid":
+    if body in ("solid", "fluid"):
         boxes = [((i, j, k), (i + 2, j + 2, k + 2))
                  for i, j, k in itertools.product((0, 2), repeat=3)]
         return boxes, numpy.zeros(3)
@@ -67,8 +73,7 @@ def parts(body):
 
 
 def scene(method, body, courant):
-    ratio = poisson_ratio(body)
-    speed = wave_speed(ratio)
+    speed = wave_speed(body)
     step = courant * CELL / speed
     boxes, shift = parts(body)
     axes = len(shift)
@@ -86,8 +91,7 @@ def scene(method, body, courant):
     return {"dimension": "solid" if axes == 3 else "plane_strain", "duration": STEPS * step,
             "grid": {"cell": CELL, "min": [0] * axes, "max": [(12 if axes == 2 else 10) * CELL] * axes},
             "solver": solver,
-            "materials": {"solid": {"model": "linear_elastic", "density": DENSITY,
-                                    "young_modulus": YOUNG, "poisson_ratio": ratio}},
+            "materials": {"solid": material(body)},
             "bodies": bodies, "audits": {"energy_growth": 1e9},
             "output": {"history": {"every": STEPS / 30 * step}}}
 
@@ -119,42 +123,60 @@ def is_stable(worker, method, body, courant):
     return bool(numpy.isfinite(found).all()) and max(found[-third:]) <= GROWTH * max(found[:third])
 
 
-def largest_courant(worker, method, body):
-    """0: unstable at LOWEST already."""
-    if not is_stable(worker, method, body, LOWEST):
-        return 0.0
+def largest_courant(worker, method, body, hint=None):
+    """0: unstable at LOWEST already. `hint`: a value that may be near."""
+    def stable(courant):
+        return is_stable(worker, method, body, courant)
+
     low, high = LOWEST, HIGHEST
-    if is_stable(worker, method, body, high):
+    if hint and hint / HINT > LOWEST and stable(hint / HINT) and not stable(hint * HINT):
+        low, high = hint / HINT, hint * HINT
+    elif not stable(low):
+        return 0.0
+    elif stable(high):
         return high
     while high > (1 + RESOLUTION) * low:
         middle = (low * high) ** 0.5
-        low, high = (middle, high) if is_stable(worker, method, body, middle) else (low, middle)
+        low, high = (middle, high) if stable(middle) else (low, middle)
     return low
 
 
 def methods():
-    for shape, transfer, ordering, locking in itertools.product(SHAPES, TRANSFERS, ORDERINGS,
-                                                                ANTI_LOCKING):
-        method = {"shape": shape, "transfer": transfer, "stress_update": ordering}
-        if ANTI_LOCKING[locking] is not None:
-            method["anti_locking"] = ANTI_LOCKING[locking]
-        yield (shape, transfer, ordering, locking), method
+    """Families of methods that differ in anti-locking only, whose limits lie near each other."""
+    for shape, transfer, ordering in itertools.product(SHAPES, TRANSFERS, ORDERINGS):
+        family = []
+        for locking, keys in ANTI_LOCKING.items():
+            method = {"shape": shape, "transfer": transfer, "stress_update": ordering}
+            if keys is not None:
+                method["anti_locking"] = keys
+            family.append(((shape, transfer, ordering, locking), method))
+        yield family
 
 
-def row_of(worker, name, method):
-    try:
-        found = [largest_courant(worker, method, body) for body in BODIES]
-    except Refused as refusal:
-        return list(name) + ["refused"] * (len(BODIES) + 1), str(refusal)
-    return list(name) + [f"{value:.3f}" for value in found] + [f"{min(found):.3f}"], None
+def rows_of(worker, family):
+    hints = {}
+    rows = []
+    for name, method in family:
+        try:
+            for body in BODIES:
+                hints[body] = largest_courant(worker, method, body, hints.get(body))
+            found = [hints[body] for body in BODIES]
+            rows.append(list(name) + [f"{value:.3f}" for value in found] + [f"{min(found):.3f}"])
+        except Refused as refusal:
+            rows.append(list(name) + ["refused"] * (len(BODIES) + 1))
+            print(*name, refusal, file=sys.stderr)
+    return rows
 
 
 def chosen(arguments):
-    wanted = [entry for entry in methods() if arguments.only in " ".join(entry[0])]
-    if arguments.sample is not None and arguments.sample < len(wanted):
-        step = len(wanted) / arguments.sample
-        wanted = [wanted[int(index * step)] for index in range(arguments.sample)]
-    return wanted
+    families = [[entry for entry in family if arguments.only in " ".join(entry[0])]
+                for family in methods()]
+    families = [family for family in families if family]
+    if arguments.sample is None:
+        return families
+    # Each family gives one method, another one every time.
+    step = max(1, len(families) // arguments.sample)
+    return [[family[index % len(family)]] for index, family in enumerate(families[::step])]
 
 
 def main():
@@ -162,7 +184,7 @@ def main():
     parser.add_argument("--worker", default=os.environ.get("TALUS_WORKER", "talus-worker"))
     parser.add_argument("--out", type=pathlib.Path, required=True, help="writes stability-map.csv here")
     parser.add_argument("--only", default="", help="methods whose name holds this text")
-    parser.add_argument("--sample", type=int, help="so many methods, spread evenly")
+    parser.add_argument("--sample", type=int, help="about so many methods, spread evenly")
     parser.add_argument("--jobs", type=int, default=os.cpu_count())
     arguments = parser.parse_args()
     wanted = chosen(arguments)
@@ -171,11 +193,12 @@ def main():
             open(arguments.out / "stability-map.csv", "w", newline="") as file:
         writer = csv.writer(file)
         writer.writerow(COLUMNS)
-        found = pool.map(lambda entry: row_of(arguments.worker, *entry), wanted)
-        for number, (row, refusal) in enumerate(found, 1):
-            writer.writerow(row)
+        found = pool.map(lambda family: rows_of(arguments.worker, family), wanted)
+        for number, rows in enumerate(found, 1):
+            writer.writerows(rows)
             file.flush()
-            print(f"{number}/{len(wanted)}", *row, refusal or "", flush=True, file=sys.stderr)
+            for row in rows:
+                print(f"{number}/{len(wanted)}", *row, flush=True, file=sys.stderr)
 
 
 if __name__ == "__main__":
