@@ -157,7 +157,8 @@ struct run {
 
     const struct shape *shape;
     const struct shape_kernels *kernels;
-    unsigned scatters; /* what the last pass of a step leaves at the nodes for the next */
+    double courant_limit; /* largest stable c dt / h of the method */
+    unsigned scatters;    /* what the last pass of a step leaves at the nodes for the next */
 
     struct wall_set walls;
     struct wall_node *wall_nodes; /* [wall_node_count] owned, in order of node blocks */

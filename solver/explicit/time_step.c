@@ -36,7 +36,7 @@ double run_critical_time_step(const struct run *run, double signal_speed, uint64
     const bool last = run->scene.solver.stress_update == TALUS_STRESS_LAST;
     const double width = domain_smallest_cell(&run->grid.domain);
     const double damping = run->scene.solver.viscous_damping;
-    const double courant = run->shape->courant_limit[run->scene.solver.stress_update];
+    const double courant = run->courant_limit;
     const double damped = last ? 1 + 2 * damping : sqrt(1 + damping * damping) + damping;
     return fmin(courant * width / signal_speed / damped, viscous_limit(run, width, materials));
 }

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* From a scene to a run without particles: materials, walls, layout, scratch. */
+#include "explicit/courant_limit.h"
 #include "simulation/method_check.h"
 #include "simulation/scene_copy.h"
 #include "simulation/simulation_private.h"
@@ -302,6 +303,7 @@ enum talus_status run_build(struct run *run, const struct talus_scene *scene,
     run->shape = shape_table[scene->solver.shape_index];
     run->grid.reach = run->shape->reach;
     run->kernels = run->shape->kernels[scene->axis_count - 1];
+    run->courant_limit = courant_limit_of(&scene->solver);
     run->scatters = scatters_of(scene->solver.stress_update);
     enum talus_status status = build_materials(run, error);
     if (status == TALUS_OK)

@@ -27,6 +27,7 @@ DATA_LISTS = {
     "server/job_columns.def",
     "server/job_states.def",
     "solver/base/messages.def",
+    "solver/explicit/courant_limits.def",
     "solver/materials/cone_parameters.def",
     "solver/materials/hardening_parameters.def",
     "solver/materials/mobilised_parameters.def",

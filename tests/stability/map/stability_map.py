@@ -7,7 +7,7 @@ run on five small free bodies whose parts start with slightly different velociti
 all lengths run through them. The step is unstable if the energy grows from the first third of the run to
 the last. README.md has the bodies and how to read the map.
 
-    stability_map.py --worker talus-worker --out FOLDER [--only TEXT] [--sample N] [--jobs N]
+    stability_map.py [--probe PROGRAM] --out FOLDER [--only TEXT] [--sample N] [--jobs N]
 """
 import argparse
 import concurrent.futures
@@ -18,7 +18,7 @@ import os
 import pathlib
 import subprocess
 import sys
-import tempfile
+import threading
 
 import numpy
 
@@ -96,37 +96,39 @@ def scene(method, body, courant):
             "output": {"history": {"every": STEPS / 30 * step}}}
 
 
+local = threading.local()
+local_program = []
+
+
 class Refused(Exception):
     """The scene is not accepted: the text says why."""
 
 
-def energies(folder):
-    with open(folder / "history.csv", newline="") as file:
-        rows = list(csv.DictReader(file))
-    return [float(row["energy.kinetic"]) + float(row["energy.strain"]) for row in rows]
+def ask(scene):
+    """Runs a scene in the probe of this thread."""
+    if not hasattr(local, "probe"):
+        local.probe = subprocess.Popen([local_program[0]], stdin=subprocess.PIPE,
+                                       stdout=subprocess.PIPE, text=True)
+    local.probe.stdin.write(json.dumps(scene) + "\n")
+    local.probe.stdin.flush()
+    return json.loads(local.probe.stdout.readline())
 
 
-def is_stable(worker, method, body, courant):
-    with tempfile.TemporaryDirectory() as name:
-        folder = pathlib.Path(name)
-        (folder / "scene.json").write_text(json.dumps(scene(method, body, courant)))
-        answer = subprocess.run([worker, "run", folder / "scene.json", "--out", folder / "out"],
-                                capture_output=True, text=True)
-        if answer.returncode == 10:
-            raise Refused(answer.stderr.strip())
-        if answer.returncode == 11:
-            return False
-        if answer.returncode not in (0, 15):
-            raise RuntimeError(f"{method} {body} {courant}: exit {answer.returncode}\n{answer.stderr}")
-        found = energies(folder / "out")
+def is_stable(method, body, courant):
+    answer = ask(scene(method, body, courant))
+    if "refused" in answer:
+        raise Refused(answer["refused"])
+    if "unstable" in answer or None in answer["energies"]:
+        return False
+    found = answer["energies"]
     third = len(found) // 3
-    return bool(numpy.isfinite(found).all()) and max(found[-third:]) <= GROWTH * max(found[:third])
+    return max(found[-third:]) <= GROWTH * max(found[:third])
 
 
-def largest_courant(worker, method, body, hint=None):
+def largest_courant(method, body, hint=None):
     """0: unstable at LOWEST already. `hint`: a value that may be near."""
     def stable(courant):
-        return is_stable(worker, method, body, courant)
+        return is_stable(method, body, courant)
 
     low, high = LOWEST, HIGHEST
     if hint and hint / HINT > LOWEST and stable(hint / HINT) and not stable(hint * HINT):
@@ -153,13 +155,13 @@ def methods():
         yield family
 
 
-def rows_of(worker, family):
+def rows_of(family):
     hints = {}
     rows = []
     for name, method in family:
         try:
             for body in BODIES:
-                hints[body] = largest_courant(worker, method, body, hints.get(body))
+                hints[body] = largest_courant(method, body, hints.get(body))
             found = [hints[body] for body in BODIES]
             rows.append(list(name) + [f"{value:.3f}" for value in found] + [f"{min(found):.3f}"])
         except Refused as refusal:
@@ -179,21 +181,95 @@ def chosen(arguments):
     return [[family[index % len(family)]] for index, family in enumerate(families[::step])]
 
 
+CONTROLS = ["none", "cell", "node", "hybrid"]
+
+
+def limit_of(rows):
+    """Of methods that differ in the field of anti-locking only; see solver/explicit/courant_limit.c."""
+    smallest = []
+    for row in rows:
+        inner = min(float(row[body]) for body in BODIES if body != "edge")
+        edge = float(row["edge"])
+        smallest.append(min(inner, edge) if edge > inner / 2 else inner)
+    return min(smallest)
+
+
+def write_table(folder, path):
+    """The map as the table that the solver is compiled with."""
+    with open(folder / "stability-map.csv", newline="") as file:
+        rows = [row for row in csv.DictReader(file) if row["limit"] != "refused"]
+    families = {}
+    for row in rows:
+        family = families.setdefault((row["shape"], row["transfer"], row["stress_update"]), {})
+        family.setdefault(row["anti_locking"].split()[0], []).append(row)
+    with open(path, "w") as file:
+        file.write("/* SPDX-License-Identifier: Apache-2.0 */\n"
+                   "/* Written by tests/stability/map/stability_map.py --table: do not edit.\n"
+                   " * COURANT_LIMIT(shape, transfer, ordering, anti-locking none, cell, node, "
+                   "hybrid) */\n")
+        for (shape, transfer, ordering), family in families.items():
+            plain = limit_of(family["none"])
+            found = [limit_of(family[name]) if name in family else plain for name in CONTROLS]
+            file.write(f"COURANT_LIMIT({shape}, {transfer}, {ordering.upper()}, "
+                       + ", ".join(f"{value:.3f}" for value in found) + ")\n")
+
+
+def draw(folder):
+    """One row a shape, transfer and ordering, one column an anti-locking and body."""
+    import matplotlib
+    matplotlib.use("svg")
+    matplotlib.rcParams["svg.hashsalt"] = "talus"
+    matplotlib.rcParams["svg.fonttype"] = "none"
+    import matplotlib.pyplot as plt
+    with open(folder / "stability-map.csv", newline="") as file:
+        rows = list(csv.DictReader(file))
+    names = list(dict.fromkeys((r["shape"], r["transfer"], r["stress_update"]) for r in rows))
+    columns = [(locking, body) for locking in ANTI_LOCKING for body in BODIES]
+    values = numpy.full((len(names), len(columns)), numpy.nan)
+    for row in rows:
+        for body in BODIES:
+            if row[body] != "refused":
+                values[names.index((row["shape"], row["transfer"], row["stress_update"])),
+                       columns.index((row["anti_locking"], body))] = float(row[body])
+    figure, axis = plt.subplots(figsize=(13, 0.22 * len(names) + 2))
+    picture = axis.imshow(values, aspect="auto", cmap="viridis", vmin=0, vmax=2)
+    axis.set_yticks(range(len(names)), [", ".join(name) for name in names], fontsize=7)
+    axis.set_xticks(range(len(columns)), [f"{locking}: {body}" for locking, body in columns],
+                    fontsize=7, rotation=90)
+    for (y, x), value in numpy.ndenumerate(values):
+        if numpy.isfinite(value):
+            axis.text(x, y, f"{value:.2f}", ha="center", va="center", fontsize=5,
+                      color="white" if value < 1.2 else "black")
+    figure.colorbar(picture, label="largest stable Courant number c dt / h")
+    figure.tight_layout()
+    figure.savefig(folder / "stability-map.svg", metadata={"Date": None})
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--worker", default=os.environ.get("TALUS_WORKER", "talus-worker"))
+    parser.add_argument("--probe", default="build/release/bin/talus-stability-probe")
     parser.add_argument("--out", type=pathlib.Path, required=True, help="writes stability-map.csv here")
     parser.add_argument("--only", default="", help="methods whose name holds this text")
     parser.add_argument("--sample", type=int, help="about so many methods, spread evenly")
     parser.add_argument("--jobs", type=int, default=os.cpu_count())
+    parser.add_argument("--draw", action="store_true", help="only draws the map in --out")
+    parser.add_argument("--table", type=pathlib.Path,
+                        help="only writes this file out of the map in --out")
     arguments = parser.parse_args()
+    if arguments.draw:
+        draw(arguments.out)
+        return
+    if arguments.table is not None:
+        write_table(arguments.out, arguments.table)
+        return
+    local_program.append(arguments.probe)
     wanted = chosen(arguments)
     arguments.out.mkdir(parents=True, exist_ok=True)
     with concurrent.futures.ThreadPoolExecutor(arguments.jobs) as pool, \
             open(arguments.out / "stability-map.csv", "w", newline="") as file:
         writer = csv.writer(file)
         writer.writerow(COLUMNS)
-        found = pool.map(lambda family: rows_of(arguments.worker, family), wanted)
+        found = pool.map(rows_of, wanted)
         for number, rows in enumerate(found, 1):
             writer.writerows(rows)
             file.flush()
