@@ -106,8 +106,8 @@ class Cantilever:
         columns, metrics = run_scene(self.scene(cells, method))
         time, found = columns["time"], columns["probe.beam"]
         omega = 2 * math.pi / self.PERIOD
-        # The mean of the first mode over the length is 2 s1 / z1 of its tip.
-        amplitude = self.SPEED / omega * 2 * 0.7340955 / 1.8751041
+        # The mean of the first mode over the length is s1 / z1 of its tip.
+        amplitude = self.SPEED / omega * 0.7340955 / 1.8751041
         square = [(y - found[0] - amplitude * math.sin(omega * t)) ** 2
                   for t, y in zip(time, found)]
         return outcome(math.sqrt(sum(square) / len(square)) / amplitude, metrics)
