@@ -163,12 +163,12 @@ void anti_locking_begin(const struct run *run, const struct particle_block *bloc
     const struct talus_solver_options *solver = &run->scene.solver;
     const bool cells =
         solver->anti_locking == TALUS_CONTROL_CELL || solver->anti_locking == TALUS_CONTROL_HYBRID;
-    *fit = (struct anti_locking){.model = run->materials[material].model,
-                                 .material = material,
-                                 .weight = weight,
-                                 .count = (size_t)block->row_count * LANE_COUNT,
-                                 .fits_cells =
-                                     cells && solver->anti_locking_field != TALUS_FIT_VOLUMETRIC};
+    fit->model = run->materials[material].model;
+    fit->material = material;
+    fit->weight = weight;
+    fit->count = (size_t)block->row_count * LANE_COUNT;
+    fit->fits_cells = cells && solver->anti_locking_field != TALUS_FIT_VOLUMETRIC;
+    fit->cells.fall_backs = 0; /* the rest is large, and cell_fit_init's */
     if (!fit->fits_cells)
         return;
     const real *position[3] = {NULL};

@@ -5,9 +5,9 @@
 
 #include "talus/scene.h"
 
-/* Of the shape functions, transfer, ordering and anti-locking of a scene: what the stability map has
- * found, and never more than the spectral radius of the step allows for the shape functions with any
- * arrangement of particles. */
+/* Of the shape functions, transfer, ordering and anti-locking of a scene: what the stability map
+ * has found, and never more than the spectral radius of the step allows for the shape functions
+ * with any arrangement of particles. */
 double courant_limit_of(const struct talus_solver_options *solver);
 
 #endif

@@ -187,10 +187,12 @@ struct material_outcome material_stage_run(struct run *run, const struct particl
         const real *weight =
             smooths ? material_stage_weights(run, block, scratch, material, present) : NULL;
         struct anti_locking fit;
-        anti_locking_begin(run, block, material, weight, &fit);
-        const bool refitted = anti_locking_strain(run, block, &fit, scratch);
-        outcome.refitted = outcome.refitted || refitted;
-        outcome.fall_backs += fit.cells.fall_backs;
+        if (smooths) {
+            anti_locking_begin(run, block, material, weight, &fit);
+            const bool refitted = anti_locking_strain(run, block, &fit, scratch);
+            outcome.refitted = outcome.refitted || refitted;
+            outcome.fall_backs += fit.cells.fall_backs;
+        }
         if (run->scene.dimension == TALUS_PLANE_STRESS)
             out_of_plane_strain(run, block, scratch, count);
         stage_clock_lap(scratch->clock, STAGE_ANTI_LOCKING);
@@ -199,7 +201,8 @@ struct material_outcome material_stage_run(struct run *run, const struct particl
         outcome.flowed = outcome.flowed || flowed;
         outcome.dissipated = outcome.dissipated || flowed || (model->dissipates && !model->plastic);
         stage_clock_lap(scratch->clock, STAGE_MATERIAL);
-        anti_locking_stress(run, block, &fit, scratch);
+        if (smooths)
+            anti_locking_stress(run, block, &fit, scratch);
         stage_clock_lap(scratch->clock, STAGE_ANTI_LOCKING);
     }
     if (run->scene.dimension == TALUS_PLANE_STRESS) /* exactly, not up to rounding */

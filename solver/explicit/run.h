@@ -157,8 +157,9 @@ struct run {
 
     const struct shape *shape;
     const struct shape_kernels *kernels;
-    double courant_limit; /* largest stable c dt / h of the method */
-    unsigned scatters;    /* what the last pass of a step leaves at the nodes for the next */
+    struct shape_context context; /* of a step of no length */
+    double courant_limit;         /* largest stable c dt / h of the method */
+    unsigned scatters; /* what the last pass of a step leaves at the nodes for the next */
 
     struct wall_set walls;
     struct wall_node *wall_nodes; /* [wall_node_count] owned, in order of node blocks */
@@ -206,13 +207,20 @@ struct run {
     struct run_audit audit;
 };
 
-static inline struct shape_context run_shape_context(struct run *run, double time_step)
+/* What does not change from step to step; once the grid is there. */
+static inline void run_make_context(struct run *run)
 {
-    struct shape_context context =
-        shape_context_make(&run->grid.layout, &run->grid.nodes, run->grid.domain.cell, time_step);
-    context.grid = &run->grid;
-    context.hybrid_scale = run->scene.solver.hybrid_scale;
-    context.hybrid_count = run->scene.solver.hybrid_count;
+    run->context =
+        shape_context_make(&run->grid.layout, &run->grid.nodes, run->grid.domain.cell, 0.0);
+    run->context.grid = &run->grid;
+    run->context.hybrid_scale = run->scene.solver.hybrid_scale;
+    run->context.hybrid_count = run->scene.solver.hybrid_count;
+}
+
+static inline struct shape_context run_shape_context(const struct run *run, double time_step)
+{
+    struct shape_context context = run->context;
+    shape_context_set_step(&context, run->grid.domain.cell, time_step);
     return context;
 }
 

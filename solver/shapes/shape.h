@@ -32,6 +32,13 @@ struct shape_context {
     double hybrid_count; /* cells with at most so many particles are at the edge */
 };
 
+static inline void shape_context_set_step(struct shape_context *context, const double cell[3],
+                                          double time_step)
+{
+    for (size_t axis = 0; axis < 3; axis++)
+        context->displacement[axis] = (real)(time_step / cell[axis]);
+}
+
 static inline struct shape_context shape_context_make(const struct particle_layout *particles,
                                                       struct node_blocks *nodes,
                                                       const double cell[3], double time_step)
@@ -39,10 +46,10 @@ static inline struct shape_context shape_context_make(const struct particle_layo
     struct shape_context context = {.particles = particles, .nodes = nodes};
     for (size_t axis = 0; axis < 3; axis++) {
         context.inverse_cell[axis] = (real)(1.0 / cell[axis]);
-        context.displacement[axis] = (real)(time_step / cell[axis]);
         for (size_t along = 0; along < 3; along++)
             context.cell_ratio[axis][along] = (real)(cell[axis] / cell[along]);
     }
+    shape_context_set_step(&context, cell, time_step);
     return context;
 }
 

@@ -303,6 +303,7 @@ enum talus_status run_build(struct run *run, const struct talus_scene *scene,
     run->shape = shape_table[scene->solver.shape_index];
     run->grid.reach = run->shape->reach;
     run->kernels = run->shape->kernels[scene->axis_count - 1];
+    run_make_context(run);
     run->courant_limit = courant_limit_of(&scene->solver);
     run->scatters = scatters_of(scene->solver.stress_update);
     enum talus_status status = build_materials(run, error);
