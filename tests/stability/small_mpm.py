@@ -77,10 +77,14 @@ class SmallMpm:
         for held, _, constrain in self.rules:
             back[held] = constrain(back[held])
         rate = np.einsum("npa,npb->pab", back[nodes], gradients)
-        trace = rate[:, 0, 0] + rate[:, 1, 1]
-        self.stress[:, 0] += length * (self.lame * trace + 2 * self.shear * rate[:, 0, 0])
-        self.stress[:, 1] += length * (self.lame * trace + 2 * self.shear * rate[:, 1, 1])
-        self.stress[:, 2] += length * self.shear * (rate[:, 0, 1] + rate[:, 1, 0])
+        self.stretch(length * rate)
+
+    def stretch(self, gradient):
+        """Stress after a step, from the gradient of its displacement."""
+        trace = gradient[:, 0, 0] + gradient[:, 1, 1]
+        self.stress[:, 0] += self.lame * trace + 2 * self.shear * gradient[:, 0, 0]
+        self.stress[:, 1] += self.lame * trace + 2 * self.shear * gradient[:, 1, 1]
+        self.stress[:, 2] += self.shear * (gradient[:, 0, 1] + gradient[:, 1, 0])
 
     @property
     def momentum(self):
