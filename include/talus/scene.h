@@ -55,6 +55,11 @@ enum talus_small_mass {
     TALUS_SMALL_MASS_CUTOFF,
     TALUS_SMALL_MASS_REDISTRIBUTE
 };
+/* What particles do at nodes of whose support hardly anything is full. */
+enum talus_front_reading {
+    TALUS_FRONT_START_VELOCITY, /* strain with the velocity at the start of the step */
+    TALUS_FRONT_FREE_FLIGHT     /* fly on with that of their own, without strain */
+};
 enum talus_precision { TALUS_PRECISION_DOUBLE, TALUS_PRECISION_SINGLE };
 enum talus_anti_locking_control {
     TALUS_CONTROL_NONE,
@@ -97,10 +102,13 @@ struct talus_solver_options {
     double viscous_damping;           /* C [-] of the viscous stress C rho h c tr(d) 1 */
     double local_damping;             /* [-] share of the out-of-balance force */
     enum talus_small_mass small_mass; /* what becomes of the pull at nodes of little mass */
-    double force_ramp;                /* [s]; 0: none */
-    double settle_time;               /* [s] before t = 0, in which walls stand still; 0: none */
-    double settle_damping;            /* c [1/s] of that time: velocities fall by exp(-c dt) */
-    enum talus_precision precision;   /* of particles, nodes and kernels */
+    double front_threshold; /* [-] least volume fraction of a node for its particles not to be
+                               smoothed; 0: none are */
+    enum talus_front_reading front_reading;
+    double force_ramp;              /* [s]; 0: none */
+    double settle_time;             /* [s] before t = 0, in which walls stand still; 0: none */
+    double settle_damping;          /* c [1/s] of that time: velocities fall by exp(-c dt) */
+    enum talus_precision precision; /* of particles, nodes and kernels */
 };
 
 struct talus_material {

@@ -2,6 +2,7 @@
 #include "explicit/advance.h"
 
 #include "explicit/anti_locking_stage.h"
+#include "explicit/front_smoothing.h"
 #include "explicit/kinematics.h"
 #include "explicit/material_stage.h"
 #include "explicit/out_of_plane.h"
@@ -197,9 +198,13 @@ static void gather_motion(struct run *run, struct block_scratch *scratch,
     unsigned what = GATHER_DISPLACEMENT | more;
     if (!still)
         what |= (corrects ? GATHER_CORRECTION : 0U) | (affine ? GATHER_AFFINE : 0U);
+    const bool smooths =
+        !still && run->grid.nodes.layout.volume != 0 && front_find(run, &context, block, scratch);
     run->kernels->gather(&context, block, what, scratch);
     if (run->pic_share > 0 && !still)
         blend_velocity(run, &context, block, scratch);
+    if (smooths)
+        front_smooth(run, &context, block, scratch);
     record_displacement(run, block, scratch, count);
 }
 
@@ -271,6 +276,8 @@ static void carry(struct run *run, struct block_scratch *scratch, uint32_t block
     if (run->force_count > 0)
         run_scatter_forces(run, block, source->mass, 0, count, scratch,
                            still ? run->time : run->time + run->time_step);
+    if (run->grid.nodes.layout.volume != 0)
+        front_scatter(run, block, source->mass, scratch);
     stage_clock_lap(scratch->clock, STAGE_SCATTER);
 }
 

@@ -2,6 +2,7 @@
 /* Particles that left their cell move to their new block and scatter there, one by one and in a
  * fixed order: by tile, last slot first, so that the slots of the other records stay valid. */
 #include "base/inline.h"
+#include "explicit/front_smoothing.h"
 #include "explicit/out_of_plane.h"
 #include "explicit/run.h"
 #include "health/health.h"
@@ -80,11 +81,14 @@ static enum talus_status move_record(struct run *run, const struct outbox_record
     if (run->grid.domain.revolves && run->scatters & SCATTER_FORCE)
         run->audit.hoop_force +=
             hoop_scatter_one(run, &run->grid.blocks[target], slot, entry->force_stress[2]);
-    if (run->force_count > 0 && run_reserve_scratch(run) != 0)
+    const bool smooths = run->grid.nodes.layout.volume != 0;
+    if ((run->force_count > 0 || smooths) && run_reserve_scratch(run) != 0)
         return talus_error_set(error, TALUS_MEMORY, "memory", "", "out of memory at step %llu",
                                (unsigned long long)run->step);
     if (run->force_count > 0)
         run_scatter_forces_one(run, &run->grid.blocks[target], slot, run->time);
+    if (smooths)
+        front_scatter_one(run, &run->grid.blocks[target], slot);
     return TALUS_OK;
 }
 

@@ -305,6 +305,13 @@ void run_treat_light_nodes(struct run *run);
 /* Makes room at the nodes for the velocity at the start of a step, if the scene needs it. */
 void run_keep_start_velocity(struct run *run);
 
+/* ---- front_smoothing.c ---- */
+/* Makes room at the nodes for volumes and marks, if the scene smooths fronts. */
+void run_keep_volume(struct run *run);
+/* Before the passes of a step: marks the nodes of whose support hardly anything is full, and clears
+ * the volumes for the next step. */
+void run_mark_empty_nodes(struct run *run);
+
 /* ---- rebin.c ---- */
 /* Moves the particles of the outboxes to their new blocks. */
 TALUS_MUST_CHECK enum talus_status run_rebin(struct run *run, struct talus_error *error);

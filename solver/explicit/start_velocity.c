@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* The velocity at the start of the step beside that at its end, for scenes whose material moves or
- * strains with something between them: v_theta = v - (1 - theta) (v - v_start). */
+ * strains with something between them: v_theta = v - (1 - theta) (v - v_start); or of which a part
+ * strains with the first alone (front_smoothing.c). */
 #include "boundaries/contact.h"
 #include "explicit/node_passes.h"
 
@@ -11,7 +12,9 @@ void run_keep_start_velocity(struct run *run)
     const struct talus_solver_options *solver = &run->scene.solver;
     struct node_layout *layout = &run->grid.nodes.layout;
     const size_t axes = run->grid.domain.axis_count;
-    if (solver->theta == 1 && solver->strain_theta == 1)
+    const bool smooths =
+        solver->front_threshold > 0 && solver->front_reading == TALUS_FRONT_START_VELOCITY;
+    if (solver->theta == 1 && solver->strain_theta == 1 && !smooths)
         return;
     layout->start = node_layout_extend(layout, axes);
     if (solver->theta != solver->strain_theta)

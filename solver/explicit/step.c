@@ -93,6 +93,8 @@ static void take_passes(struct run *run, struct stage_clock *clock)
 {
     const bool first = run->scene.solver.stress_update == TALUS_STRESS_FIRST;
     const struct talus_solver_options *options = &run->scene.solver;
+    if (run->grid.nodes.layout.volume != 0)
+        run_mark_empty_nodes(run);
     run->pic_share = transfer_of(options)->pic_share(options, run->time_step);
     if (!first)
         run_treat_light_nodes(run);

@@ -28,6 +28,7 @@ static const char *const field_words[] = {"volumetric", "full", "full_constant_v
 static const char *const apply_words[] = {"strain_and_stress", "strain", NULL};
 static const char *const averaging_words[] = {"weighted", "unweighted_sums", "unweighted", NULL};
 static const char *const small_mass_words[] = {"none", "cutoff", "redistribute", NULL};
+static const char *const front_words[] = {"start_velocity", "free_flight", NULL};
 static const char *const precision_words[] = {"double", "single", NULL};
 
 static const struct scene_field anti_locking_fields[] = {
@@ -100,6 +101,26 @@ static const struct scene_field hybrid_fields[] = {
     {.key = NULL},
 };
 
+static const struct scene_field front_fields[] = {
+    {.key = "threshold",
+     .kind = SCENE_NUMBER,
+     .unit = "1",
+     .minimum = 0.0,
+     .above_minimum = true,
+     .maximum = 1.0,
+     .default_value = 0.25,
+     .offset = AT(front_threshold),
+     .meaning = "particles are smoothed at nodes of whose support a smaller share is full"},
+    {.key = "reading",
+     .kind = SCENE_CHOICE,
+     .unit = "1",
+     .choices = front_words,
+     .offset = AT(front_reading),
+     .meaning = "they strain with the nodes' velocity at the start of the step, or fly on with "
+                "their own velocity without strain"},
+    {.key = NULL},
+};
+
 static const struct scene_field stabilise_fields[] = {
     {.key = "viscous_damping",
      .kind = SCENE_NUMBER,
@@ -130,7 +151,13 @@ static const struct scene_field stabilise_fields[] = {
      .offset = AT(small_mass),
      .meaning = "internal force of nodes below a tenth of a particle's mass: kept, dropped, or "
                 "given to the nodes around them"},
-    {.key = "front_smoothing", .unsupported = true},
+    {.key = "front_smoothing",
+     .kind = SCENE_OBJECT,
+     .unit = "1",
+     .alternative = "front smoothing", /* none unless it is given */
+     .fields = front_fields,
+     .meaning = "particles at nearly empty nodes are updated from the start of the step only "
+                "(Mast 2013); none unless given"},
     {.key = "settle",
      .kind = SCENE_OBJECT,
      .unit = "1",

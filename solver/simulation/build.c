@@ -300,6 +300,7 @@ enum talus_status run_build(struct run *run, const struct talus_scene *scene,
     run_add_tractions(run);
     run_set_gravity(run);
     run_keep_start_velocity(run);
+    run_keep_volume(run);
     run->shape = shape_table[scene->solver.shape_index];
     run->grid.reach = run->shape->reach;
     run->kernels = run->shape->kernels[scene->axis_count - 1];

@@ -111,6 +111,41 @@ static enum talus_status check_small_mass(const struct talus_scene *scene,
                            shape->name);
 }
 
+/* Particles are smoothed where the strain of a step is worked out once, from the end of the step,
+ * and where the share of a node's support that is full is a share of a cell. */
+static enum talus_status check_front(const struct talus_scene *scene, struct talus_error *error)
+{
+    static const char pointer[] = "/solver/stabilise/front_smoothing";
+    const struct talus_solver_options *solver = &scene->solver;
+    const struct shape *shape = shape_table[solver->shape_index];
+    if (!(solver->front_threshold > 0))
+        return TALUS_OK;
+    if (solver->stress_update == TALUS_STRESS_FIRST)
+        return talus_error_set(error, TALUS_INVALID, "contradiction", pointer,
+                               "\"first\" strains with the velocity at the start of the step "
+                               "everywhere: there is nothing to smooth");
+    if (solver->stress_update == TALUS_STRESS_MODIFIED_LAST &&
+        solver->front_reading == TALUS_FRONT_START_VELOCITY)
+        return talus_error_set(error, TALUS_INVALID, "contradiction", pointer,
+                               "\"start_velocity\" needs \"stress_update\": \"last\": "
+                               "\"modified_last\" maps velocities to the nodes after the forces "
+                               "have acted, and has none of the start of the step");
+    if (shape->halves_cells)
+        return talus_error_set(error, TALUS_INVALID, "contradiction", pointer,
+                               "the nodes of shape \"%s\" do not all have a cell's volume, of "
+                               "which a share could be full",
+                               shape->name);
+    if (scene->dimension == TALUS_AXISYMMETRIC)
+        return talus_error_set(error, TALUS_INVALID, "contradiction", pointer,
+                               "is not made for \"axisymmetric\" scenes: the hoop strain would "
+                               "still be of the end of the step");
+    if (solver->anti_locking == TALUS_CONTROL_NODE || solver->anti_locking == TALUS_CONTROL_HYBRID)
+        return talus_error_set(error, TALUS_INVALID, "contradiction", pointer,
+                               "cannot be combined with anti_locking over nodes, which works out "
+                               "strain and motion more than once; \"cell\" can");
+    return TALUS_OK;
+}
+
 enum talus_status method_check(const struct talus_scene *scene, struct talus_error *error)
 {
     enum talus_status status = check_share(scene, error);
@@ -124,5 +159,7 @@ enum talus_status method_check(const struct talus_scene *scene, struct talus_err
         status = check_theta(scene, error);
     if (status == TALUS_OK)
         status = check_small_mass(scene, error);
+    if (status == TALUS_OK)
+        status = check_front(scene, error);
     return status;
 }

@@ -58,6 +58,8 @@ static void add_solver(uint64_t *hash, const struct talus_scene *scene)
     add_number(hash, (uint64_t)solver->gimp_scaling);
     add_number(hash, solver->transfer_index);
     add_number(hash, (uint64_t)solver->small_mass);
+    add_number(hash, (uint64_t)solver->front_reading);
+    add_reals(hash, &solver->front_threshold, 1);
     add_reals(hash, &solver->hybrid_scale, 1);
     add_reals(hash, &solver->hybrid_count, 1);
     add_number(hash, (uint64_t)solver->stress_update);

@@ -24,6 +24,8 @@ struct node_layout {
     uint32_t external;   /* [N] of the present particle positions, other than stress and constant
                             gravity; 0: the scene has none */
     uint32_t start;      /* [m/s] velocity at the start of the step; 0: the scene needs none */
+    uint32_t volume;     /* [m^3] of the present particle positions, and after it a mark: 1 at nodes
+                            of whose support hardly anything is full; 0: the scene needs none */
     uint32_t correction; /* [m/s] velocity increment that they get in the second pass */
     uint32_t component_count;
 };
