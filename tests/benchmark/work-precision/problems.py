@@ -48,11 +48,13 @@ def run_scene(scene):
     return columns, metrics
 
 
-def outcome(error, metrics):
-    """Seconds of the loop over steps: the tenth of a second of start-up says nothing of a method."""
-    steps = metrics["particles"] * metrics["steps"]
-    return {"error": error, "particle_steps": steps,
-            "seconds": steps / metrics["particle_steps_per_second"]}
+def outcome(error, scene, metrics):
+    """Processor time without that of a run of hardly a step: start-up says nothing of a method."""
+    short = dict(scene, duration=1e-6 * scene["duration"])
+    short["output"] = {"history": {"every": short["duration"]}}
+    _, start = run_scene(short)
+    return {"error": error, "particle_steps": metrics["particles"] * metrics["steps"],
+            "seconds": max(1e-3, metrics["cpu_seconds"] - start["cpu_seconds"])}
 
 
 class Manufactured:
@@ -78,7 +80,7 @@ class Cantilever:
     tip's path from the one of Timoshenko's theory (mast-6.2)."""
 
     name, error = "cantilever", "tip path, root mean square / amplitude"
-    resolutions = (1, 2, 4, 8)  # cells over the height
+    resolutions = (1, 2, 3, 4)  # cells over the height
     LENGTH, HEIGHT, SPEED = 10.0, 1.0, 0.1
     PERIOD = 0.122801  # Timoshenko, shear factor 5/6
 
@@ -103,14 +105,15 @@ class Cantilever:
                 "output": {"history": {"every": self.PERIOD / 200}}}
 
     def solve(self, cells, method):
-        columns, metrics = run_scene(self.scene(cells, method))
+        scene = self.scene(cells, method)
+        columns, metrics = run_scene(scene)
         time, found = columns["time"], columns["probe.beam"]
         omega = 2 * math.pi / self.PERIOD
         # The mean of the first mode over the length is s1 / z1 of its tip.
         amplitude = self.SPEED / omega * 0.7340955 / 1.8751041
         square = [(y - found[0] - amplitude * math.sin(omega * t)) ** 2
                   for t, y in zip(time, found)]
-        return outcome(math.sqrt(sum(square) / len(square)) / amplitude, metrics)
+        return outcome(math.sqrt(sum(square) / len(square)) / amplitude, scene, metrics)
 
 
 class DamBreak:
@@ -118,7 +121,7 @@ class DamBreak:
     a hundredth of the water's stiffness. The experiment itself is known to some 5 %."""
 
     name, error = "dam break", "front and height, root mean square relative"
-    resolutions = (3, 4, 6, 9)  # cells over the width
+    resolutions = (3, 4, 5, 6)  # cells over the width
 
     def __init__(self):
         path = ROOT / "clients" / "scenes" / "mast-6.1.1-dam-break-a2.json"
@@ -136,9 +139,10 @@ class DamBreak:
         return scene
 
     def solve(self, cells, method):
-        _, metrics = run_scene(self.scene(cells, method))
+        scene = self.scene(cells, method)
+        _, metrics = run_scene(scene)
         square = metrics["error.front"] ** 2 + metrics["error.height"] ** 2
-        return outcome(math.sqrt(square / 2), metrics)
+        return outcome(math.sqrt(square / 2), scene, metrics)
 
 
 class Column:
@@ -147,7 +151,7 @@ class Column:
     the law; with the Hencky law ln J / J = P / M, Y from 0 to H."""
 
     name, error = "column at rest", "settlement of the centre of mass, relative"
-    resolutions = (8, 16, 32, 64)  # cells over the height
+    resolutions = (8, 16, 24, 32)  # cells over the height
     HEIGHT, DENSITY, MODULUS, GRAVITY = 1.0, 1000.0, 1e5, 10.0
 
     def stretch(self, pressure):
@@ -189,15 +193,18 @@ class Column:
                 "boundaries": [{"name": name, "plane": {"point": point, "normal": normal},
                                 "condition": "slip"} for name, point, normal in walls],
                 "probes": [{"name": "centre", "kind": "centre_of_mass", "component": "y"}],
+                "audits": {"energy_growth": 1},  # what damping takes is booked with an error
                 "output": {"history": {"every": period / 4}}}
 
     def solve(self, cells, method):
-        columns, metrics = run_scene(self.scene(cells, method))
+        scene = self.scene(cells, method)
+        columns, metrics = run_scene(scene)
         centre = columns["probe.centre"]
         exact = self.settlement()
         late = centre[-8:]  # two periods
-        return outcome(abs(centre[0] - sum(late) / len(late) - exact) / exact, metrics)
+        return outcome(abs(centre[0] - sum(late) / len(late) - exact) / exact,
+                       scene, metrics)
 
 
-PROBLEMS = [Cantilever(), Manufactured("axis-aligned", (8, 16, 32, 64)),
-            Manufactured("vortex", (24, 36, 48, 72)), DamBreak(), Column()]
+PROBLEMS = [Cantilever(), Manufactured("axis-aligned", (8, 16, 24, 32)),
+            Manufactured("vortex", (24, 32, 40, 48)), DamBreak(), Column()]
