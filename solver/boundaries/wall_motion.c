@@ -44,6 +44,11 @@ static void set_velocities(struct wall_set *walls, const struct talus_scene *sce
     }
 }
 
+static bool is_at(const double a[3], const double b[3])
+{
+    return a[0] == b[0] && a[1] == b[1] && a[2] == b[2];
+}
+
 void wall_set_prepare(struct wall_set *walls, const struct talus_scene *scene,
                       const struct domain *domain, double time, double time_step)
 {
@@ -58,8 +63,7 @@ void wall_set_prepare(struct wall_set *walls, const struct talus_scene *scene,
         snap(&shape->motion, shape, boundary, domain);
         shape->motion.acts =
             !boundary->timed || (boundary->from <= middle && middle < boundary->until);
-        if (memcmp(before.snapped, shape->motion.snapped, sizeof before.snapped) == 0 &&
-            before.acts == shape->motion.acts)
+        if (is_at(before.snapped, shape->motion.snapped) && before.acts == shape->motion.acts)
             continue;
         wall_shape_place(shape, boundary, domain);
         changed = true;

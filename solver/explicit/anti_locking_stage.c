@@ -83,6 +83,7 @@ static void shift_small(size_t normals, size_t count, const real *weight, real *
         shift_trace(2, count, weight, strain, target, 1, shifts);
     else
         shift_trace(3, count, weight, strain, target, 1, shifts);
+    assert(normals <= 3 && stored[0] != NULL && stored[1] != NULL && stored[2] != NULL);
     for (size_t slot = 0; slot < count; slot += LANE_COUNT) {
         for (size_t component = 0; component < normals; component++)
             lanes_store(stored[component] + slot,

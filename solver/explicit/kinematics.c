@@ -138,6 +138,7 @@ static void add_symmetric(const struct run *run, const struct block_scratch *scr
             const real *a = scratch->gradient[3 * row + column];
             const real *b = scratch->gradient[3 * column + row];
             real *sum = tensor[sym3_component[row][column]];
+            assert(sum != NULL);
             for (size_t slot = 0; slot < count; slot += LANE_COUNT)
                 lanes_store(sum + slot,
                             lanes_load(sum + slot) +

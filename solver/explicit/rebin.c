@@ -20,6 +20,7 @@ static bool rebase(const struct run *run, struct particle_record *record, int32_
     const struct domain *domain = &run->grid.domain;
     const uint32_t first = run->grid.layout.first_component[PARTICLE_POSITION];
     bool inside = true;
+    assert(domain->axis_count <= 3);
     for (size_t axis = 0; axis < domain->axis_count; axis++) {
         const double position = record->values[first + axis];
         const double hop = fmin(fmax(floor(position + 0.5), -2e9), 2e9);

@@ -26,14 +26,17 @@ static void collect(const struct mobilised *mobilised, size_t count, const real 
 {
     const real factor = (real)7.3484692283495345; /* 3 sqrt(6) */
     const real apex = (real)mobilised->apex;
-    size_t used = 0;
+    size_t used = 0, last = 0;
     for (size_t index = 0; index < count; index++) {
         real least = minimum(angles->tangent[index], angles->flow_tangent[index]);
         slots->index[used] = index;
-        used += (yields[index] > 0) & (least >= least_tangent) & (invariants->norm[index] > 0);
+        const bool turns =
+            (yields[index] > 0) & (least >= least_tangent) & (invariants->norm[index] > 0);
+        last = turns ? index : last;
+        used += turns;
     }
     for (; used % MATERIAL_SLOT_MULTIPLE != 0; used++)
-        slots->index[used] = slots->index[used - 1];
+        slots->index[used] = last;
     slots->count = used;
     for (size_t place = 0; place < used; place++) {
         size_t index = slots->index[place];

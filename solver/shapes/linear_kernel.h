@@ -457,27 +457,26 @@ static void LOCAL(scatter)(const struct shape_context *context, const struct par
     }
 }
 
-/* What one particle has to give to its nodes; one velocity component of a node. */
-static void LOCAL(add_one)(const struct shape_context *context, const struct particle_block *block,
-                           size_t slot, const real force_stress[6], unsigned what, uint32_t row,
-                           const real offset[DIMENSION], real weighted_mass,
-                           const real slope[DIMENSION], real *force, real *momentum)
+/* What one particle gives to a node along one axis: force, and momentum over its weighted mass. */
+static real LOCAL(force_of_one)(const real force_stress[6], uint32_t row,
+                                const real slope[DIMENSION])
 {
-    const struct particle_layout *particles = context->particles;
-    if (what & SCATTER_FORCE) {
-        real sum = 0;
-        for (int axis = 0; axis < DIMENSION; axis++)
-            sum -= force_stress[sym3_component[row][axis]] * slope[axis];
-        *force += sum;
-    }
-    if (what & SCATTER_MOMENTUM) {
-        real velocity = particle_values(particles, block, PARTICLE_VELOCITY, row)[slot];
-        for (uint32_t axis = 0; axis < DIMENSION && particles->component_count[PARTICLE_AFFINE] > 0;
-             axis++)
-            velocity += offset[axis] * particle_values(particles, block, PARTICLE_AFFINE,
-                                                       DIMENSION * row + axis)[slot];
-        *momentum += weighted_mass * velocity;
-    }
+    real sum = 0;
+    for (int axis = 0; axis < DIMENSION; axis++)
+        sum -= force_stress[sym3_component[row][axis]] * slope[axis];
+    return sum;
+}
+
+static real LOCAL(velocity_of_one)(const struct particle_layout *particles,
+                                   const struct particle_block *block, size_t slot, uint32_t row,
+                                   const real offset[DIMENSION])
+{
+    real velocity = particle_values(particles, block, PARTICLE_VELOCITY, row)[slot];
+    for (uint32_t axis = 0; axis < DIMENSION && particles->component_count[PARTICLE_AFFINE] > 0;
+         axis++)
+        velocity += offset[axis] * particle_values(particles, block, PARTICLE_AFFINE,
+                                                   DIMENSION * row + axis)[slot];
+    return velocity;
 }
 
 static void LOCAL(scatter_one)(const struct shape_context *context,
@@ -507,11 +506,15 @@ static void LOCAL(scatter_one)(const struct shape_context *context,
         const size_t node = shifted % LANE_COUNT;
         if (what & SCATTER_MASS)
             node_values(context->nodes, node_block, layout->mass)[node] += weight * mass;
-        for (uint32_t row = 0; row < DIMENSION; row++)
-            LOCAL(add_one)
-        (context, block, slot, force_stress, what, row, offset, weight * mass, slope,
-         node_values(context->nodes, node_block, layout->force + row) + node,
-         node_values(context->nodes, node_block, layout->momentum + row) + node);
+        for (uint32_t row = 0; row < DIMENSION; row++) {
+            if (what & SCATTER_FORCE)
+                node_values(context->nodes, node_block, layout->force + row)[node] +=
+                    LOCAL(force_of_one)(force_stress, row, slope);
+            if (what & SCATTER_MOMENTUM)
+                node_values(context->nodes, node_block, layout->momentum + row)[node] +=
+                    weight * mass *
+                    LOCAL(velocity_of_one)(context->particles, block, slot, row, offset);
+        }
     }
 }
 

@@ -8,11 +8,13 @@ struct LOCAL(sums) {
 };
 
 /* sums_c += N value_c over some rows of particles, for c < count. */
+/* NOLINTNEXTLINE(readability-function-size): its branches are constants where it is inlined */
 TALUS_INLINE void LOCAL(spread)(const struct LOCAL(chunk) * chunk, const lanes (*value)[WIDE_CHUNK],
                                 int count, struct LOCAL(sums) * sums)
 {
     for (int row = 0; row < WIDE_ROWS; row++) {
         const int y = row % WIDE_COLUMNS, z = row / WIDE_COLUMNS;
+        (void)y, (void)z; /* fewer axes need less */
         lanes sum[3][WIDE_NODES];
         UNROLL for (int c = 0; c < count; c++)
         {
@@ -39,12 +41,14 @@ TALUS_INLINE void LOCAL(spread)(const struct LOCAL(chunk) * chunk, const lanes (
 }
 
 /* sums_c += sum over the axes b of dN/dx_b q_cb over some rows of particles, for all c. */
+/* NOLINTNEXTLINE(readability-function-size): its branches are constants where it is inlined */
 TALUS_INLINE void LOCAL(spread_slopes)(const struct LOCAL(chunk) * chunk,
                                        const lanes (*q)[DIMENSION][WIDE_CHUNK],
                                        struct LOCAL(sums) * sums)
 {
     for (int row = 0; row < WIDE_ROWS; row++) {
         const int y = row % WIDE_COLUMNS, z = row / WIDE_COLUMNS;
+        (void)y, (void)z; /* fewer axes need less */
         lanes sum[DIMENSION][WIDE_NODES];
         UNROLL for (int c = 0; c < DIMENSION; c++)
         {
@@ -57,6 +61,7 @@ TALUS_INLINE void LOCAL(spread_slopes)(const struct LOCAL(chunk) * chunk,
             const lanes wz = DIMENSION > 2 ? s->w[Z_AXIS][z] : one;
             const lanes both = wy * wz;
             const lanes slope_y = s->dw[Y_AXIS][y] * wz, slope_z = wy * s->dw[Z_AXIS][z];
+            (void)one, (void)slope_y, (void)slope_z;
             UNROLL for (int c = 0; c < DIMENSION; c++)
             {
                 const lanes along_x = q[c][0][r] * both;

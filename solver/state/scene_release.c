@@ -1,5 +1,4 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-#include "state/time_table.h"
 #include "talus/scene.h"
 
 #include "state/time_table.h"

@@ -13,7 +13,8 @@
 #include <string.h>
 #include <time.h>
 
-static const struct manufactured *const problems[] = {&axis_aligned, &vortex};
+enum { PROBLEM_COUNT = 2 };
+static const struct manufactured *const problems[PROBLEM_COUNT] = {&axis_aligned, &vortex};
 
 /* What the callbacks see: where each particle was in the beginning, by id. */
 struct stage {
@@ -163,8 +164,7 @@ static int solve(const struct talus_scene *scene, const struct manufactured *pro
 int main(int argument_count, char **arguments)
 {
     const struct manufactured *problem = NULL;
-    for (size_t index = 0; argument_count > 2 && index < sizeof problems / sizeof *problems;
-         index++)
+    for (size_t index = 0; argument_count > 2 && index < PROBLEM_COUNT; index++)
         if (strcmp(arguments[1], problems[index]->name) == 0)
             problem = problems[index];
     if (problem == NULL) {
@@ -181,7 +181,7 @@ int main(int argument_count, char **arguments)
                           issues.items[index].detail);
         status = 10;
     } else {
-        const int threads = argument_count > 3 ? atoi(arguments[3]) : 1;
+        const int threads = argument_count > 3 ? (int)strtol(arguments[3], NULL, 10) : 1;
         status = solve(&scene, problem, threads) == 0 ? 0 : 11;
         talus_scene_release(&scene);
     }
