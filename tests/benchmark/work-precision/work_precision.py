@@ -23,7 +23,7 @@ def measure(arguments):
     from problems import PROBLEMS, Failed, Refused
     arguments.out.mkdir(parents=True, exist_ok=True)
     with open(arguments.out / "work-precision.csv", "w", newline="") as file:
-        writer = csv.writer(file)
+        writer = csv.writer(file, lineterminator="\n")
         writer.writerow(COLUMNS)
         for problem in PROBLEMS:
             for label, method in METHODS.items():

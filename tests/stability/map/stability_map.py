@@ -267,7 +267,7 @@ def main():
     arguments.out.mkdir(parents=True, exist_ok=True)
     with concurrent.futures.ThreadPoolExecutor(arguments.jobs) as pool, \
             open(arguments.out / "stability-map.csv", "w", newline="") as file:
-        writer = csv.writer(file)
+        writer = csv.writer(file, lineterminator="\n")
         writer.writerow(COLUMNS)
         found = pool.map(rows_of, wanted)
         for number, rows in enumerate(found, 1):

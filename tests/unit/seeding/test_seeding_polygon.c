@@ -78,7 +78,7 @@ static void points_on_a_side_are_inside(void **state)
     body->lattice_value[0] = 30;
     body->lattice_value[1] = 3; /* rows at 0.5, 1.5, 2.5 */
     struct particle_seed seed = {0};
-    struct talus_error error;
+    struct talus_error error = {.status = TALUS_OK};
     struct seeding_report report;
     seeding_report(&fixture.scene, 0, &report);
     assert_int_equal(report.particle_count, 30 + 10 + 30);
