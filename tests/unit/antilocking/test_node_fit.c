@@ -112,8 +112,7 @@ static double field_at(const struct bench *bench, const struct block_arrays *arr
     for (uint32_t axis = 0; axis < bench->axes && component < 3; axis++) {
         const real *position = particle_values(&bench->grid.layout, block, PARTICLE_POSITION, axis);
         const size_t lane = axis == 0 ? slot % LANE_COUNT : 0;
-        const double x =
-            block->cell[axis] + (double)lane - 0.5 * CELLS + (double)position[slot];
+        const double x = block->cell[axis] + (double)lane - 0.5 * CELLS + (double)position[slot];
         value += slope * (double)(1 + component + axis) * x;
     }
     return value;

@@ -98,7 +98,7 @@ static void rotation_is_rigid(void **state)
     (void)state;
     struct seeding_fixture fixture;
     struct particle_seed seed;
-    struct talus_error error;
+    struct talus_error error = {.status = TALUS_OK};
     fixture_init(&fixture, 3, "linear_elastic");
     struct talus_body *body = &fixture.bodies[0];
     const double about[3] = {0.5, -1.0, 2.0}, rate[3] = {1.0, -2.0, 3.0};
