@@ -63,6 +63,7 @@ json_t *jobs_json(struct service *service, const struct job *job)
     (void)json_object_set_new(view, "state", json_string(state));
     (void)json_object_set_new(view, "reason", text_json(job->reason));
     (void)json_object_set_new(view, "detail", text_json(job->detail));
+    (void)json_object_set_new(view, "owner", text_json(job->owner));
     (void)json_object_set_new(view, "cancel_requested",
                               json_boolean(job->cancel_requested && job->state == JOB_RUNNING));
     (void)json_object_set_new(view, "revision", json_integer(job->revision));

@@ -5,6 +5,7 @@
 
 #include "job.h"
 #include "reply.h"
+#include "request_principal.h"
 #include "target.h"
 #include "text.h"
 
@@ -40,6 +41,7 @@ struct request {
     char *raw;    /* the target as sent */
     char *method; /* "HEAD" has the route of "GET" */
     struct target target;
+    struct principal principal;
     const struct route *route;
     const char *segment; /* what the first "*" stands for */
     char rest[1024];     /* what the second "*" or "**" stands for */

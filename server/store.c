@@ -6,29 +6,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { SCHEMA_VERSION = 1 };
-
-static const char schema[] =
-    "CREATE TABLE jobs (id TEXT PRIMARY KEY"
-#define JOB_TEXT(name) ", " #name " TEXT"
-#define JOB_INTEGER(name) ", " #name " INTEGER NOT NULL"
-#define JOB_REAL(name) ", " #name " REAL NOT NULL"
-#include "job_columns.def"
-#undef JOB_TEXT
-#undef JOB_INTEGER
-#undef JOB_REAL
-    ") WITHOUT ROWID;"
-    "CREATE INDEX jobs_by_state ON jobs (state, priority DESC, id);"
-    "CREATE TABLE transitions (row INTEGER PRIMARY KEY AUTOINCREMENT,"
-    " job TEXT NOT NULL REFERENCES jobs (id) ON DELETE CASCADE, number INTEGER NOT NULL,"
-    " at TEXT NOT NULL, state TEXT NOT NULL, attempt INTEGER NOT NULL, reason TEXT, detail TEXT,"
-    " UNIQUE (job, number));"
-    "CREATE TABLE idempotency (key TEXT NOT NULL, owner TEXT NOT NULL, body TEXT NOT NULL,"
-    " job TEXT NOT NULL REFERENCES jobs (id) ON DELETE CASCADE, PRIMARY KEY (owner, key))"
-    " WITHOUT ROWID;"
-    "CREATE INDEX idempotency_by_job ON idempotency (job);"
-    "PRAGMA user_version = 1;";
-
 enum talus_status store_failure(sqlite3 *database, struct talus_error *error)
 {
     return talus_error_set(error, TALUS_IO, "store", "", "the store failed: %s",
@@ -57,7 +34,7 @@ enum talus_status store_finish(sqlite3 *database, sqlite3_stmt *statement,
     return status;
 }
 
-static bool execute(sqlite3 *database, const char *sql)
+bool store_execute(sqlite3 *database, const char *sql)
 {
     return sqlite3_exec(database, sql, NULL, NULL, NULL) == SQLITE_OK;
 }
@@ -66,26 +43,26 @@ static bool execute(sqlite3 *database, const char *sql)
  * fails. */
 static bool writes_commit(sqlite3 *database, struct store_write *first)
 {
-    bool begun = execute(database, "BEGIN IMMEDIATE");
+    bool begun = store_execute(database, "BEGIN IMMEDIATE");
     for (struct store_write *write = first; write != NULL && begun; write = write->next) {
-        if (!execute(database, "SAVEPOINT one")) {
+        if (!store_execute(database, "SAVEPOINT one")) {
             write->status = store_failure(database, write->error);
             continue;
         }
         write->status = write->apply(database, write->context, write->error);
-        if (write->status != TALUS_OK && !execute(database, "ROLLBACK TO one"))
+        if (write->status != TALUS_OK && !store_execute(database, "ROLLBACK TO one"))
             begun = false;
-        if (!execute(database, "RELEASE one"))
+        if (!store_execute(database, "RELEASE one"))
             begun = false;
     }
-    if (begun && execute(database, "COMMIT"))
+    if (begun && store_execute(database, "COMMIT"))
         return true;
     for (struct store_write *write = first; write != NULL; write = write->next) {
         if (write->status == TALUS_OK)
             write->status = store_failure(database, write->error);
     }
     if (sqlite3_get_autocommit(database) == 0)
-        (void)execute(database, "ROLLBACK");
+        (void)store_execute(database, "ROLLBACK");
     return false;
 }
 
@@ -146,29 +123,9 @@ static bool connection_open(const char *path, sqlite3 **database)
                            SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE | SQLITE_OPEN_NOMUTEX,
                            NULL) == SQLITE_OK &&
            sqlite3_busy_timeout(*database, 10000) == SQLITE_OK &&
-           execute(*database, "PRAGMA journal_mode = WAL") &&
-           execute(*database, "PRAGMA synchronous = FULL") &&
-           execute(*database, "PRAGMA foreign_keys = ON");
-}
-
-static enum talus_status schema_prepare(sqlite3 *database, struct talus_error *error)
-{
-    sqlite3_stmt *statement = store_prepare(database, "PRAGMA user_version", error);
-    if (statement == NULL)
-        return TALUS_IO;
-    int version = sqlite3_step(statement) == SQLITE_ROW ? sqlite3_column_int(statement, 0) : -1;
-    (void)sqlite3_finalize(statement);
-    if (version == SCHEMA_VERSION)
-        return TALUS_OK;
-    if (version != 0)
-        return talus_error_set(error, TALUS_IO, "version", "",
-                               "the state was written by another version of talusd (format %d, "
-                               "this one reads %d)",
-                               version, SCHEMA_VERSION);
-    if (!execute(database, "BEGIN IMMEDIATE") || !execute(database, schema) ||
-        !execute(database, "COMMIT"))
-        return store_failure(database, error);
-    return TALUS_OK;
+           store_execute(*database, "PRAGMA journal_mode = WAL") &&
+           store_execute(*database, "PRAGMA synchronous = FULL") &&
+           store_execute(*database, "PRAGMA foreign_keys = ON");
 }
 
 enum talus_status store_open(const char *path, struct store **result, struct talus_error *error)
@@ -184,7 +141,7 @@ enum talus_status store_open(const char *path, struct store **result, struct tal
     if (!connection_open(path, &store->writer))
         status = store_failure(store->writer, error);
     if (status == TALUS_OK)
-        status = schema_prepare(store->writer, error);
+        status = store_schema_prepare(store->writer, error);
     if (status == TALUS_OK && !connection_open(path, &store->reader))
         status = store_failure(store->reader, error);
     if (status == TALUS_OK) {

@@ -14,14 +14,15 @@
 
 struct store;
 
-/* An idempotency key with the checksum of the body it came with. */
+/* An idempotency key of a principal ("" without a token) with the checksum of the body it came
+ * with. */
 struct store_key {
-    const char *key, *body;
+    const char *owner, *key, *body;
 };
 
 enum store_insert {
     STORE_INSERTED,
-    STORE_REPLAYED,   /* the key is known with this body: `existing` is its job */
+    STORE_REPLAYED,   /* the key is known with this body: `existing` is its resource */
     STORE_OTHER_BODY, /* the key is known with another body */
     STORE_QUEUE_FULL,
 };

@@ -37,6 +37,12 @@ sqlite3_stmt *store_prepare(sqlite3 *database, const char *sql, struct talus_err
 /* Steps a statement that returns no rows, then finalizes it (NULL fails). */
 TALUS_MUST_CHECK enum talus_status store_finish(sqlite3 *database, sqlite3_stmt *statement,
                                                 struct talus_error *error);
+/* Runs statements that return nothing. */
+bool store_execute(sqlite3 *database, const char *sql);
 enum talus_status store_failure(sqlite3 *database, struct talus_error *error);
+/* Makes the tables of a new database, or brings those of an older daemon up to date, in one
+ * transaction. TALUS_IO, code "version", if a newer one wrote them (store_schema.c). */
+TALUS_MUST_CHECK enum talus_status store_schema_prepare(sqlite3 *database,
+                                                        struct talus_error *error);
 
 #endif

@@ -70,16 +70,17 @@ static enum talus_status key_find(sqlite3 *database, const struct store_key *key
 {
     *result = STORE_INSERTED;
     sqlite3_stmt *statement = store_prepare(
-        database, "SELECT body, job FROM idempotency WHERE owner = '' AND key = ?", error);
+        database, "SELECT body, resource FROM request_keys WHERE owner = ? AND key = ?", error);
     if (statement == NULL)
         return TALUS_IO;
-    (void)sqlite3_bind_text(statement, 1, key->key, -1, SQLITE_STATIC);
+    (void)sqlite3_bind_text(statement, 1, key->owner, -1, SQLITE_STATIC);
+    (void)sqlite3_bind_text(statement, 2, key->key, -1, SQLITE_STATIC);
     int step = sqlite3_step(statement);
     if (step == SQLITE_ROW) {
         const char *body = (const char *)sqlite3_column_text(statement, 0);
-        const char *job = (const char *)sqlite3_column_text(statement, 1);
+        const char *resource = (const char *)sqlite3_column_text(statement, 1);
         *result = strcmp(body, key->body) == 0 ? STORE_REPLAYED : STORE_OTHER_BODY;
-        (void)snprintf(existing, 64, "%s", job);
+        (void)snprintf(existing, 64, "%s", resource);
     }
     (void)sqlite3_finalize(statement);
     return step == SQLITE_ROW || step == SQLITE_DONE ? TALUS_OK : store_failure(database, error);
@@ -93,6 +94,22 @@ enum talus_status store_key_find(struct store *store, const struct store_key *ke
     enum talus_status status = key_find(store->reader, key, result, existing, error);
     (void)pthread_mutex_unlock(&store->reader_mutex);
     return status;
+}
+
+/* Runs a statement with one parameter. */
+static enum talus_status run_for(sqlite3 *database, const char *sql, const char *id,
+                                 struct talus_error *error)
+{
+    sqlite3_stmt *statement = store_prepare(database, sql, error);
+    if (statement != NULL)
+        (void)sqlite3_bind_text(statement, 1, id, -1, SQLITE_STATIC);
+    return store_finish(database, statement, error);
+}
+
+static enum talus_status keys_remove(sqlite3 *database, const char *resource,
+                                     struct talus_error *error)
+{
+    return run_for(database, "DELETE FROM request_keys WHERE resource = ?", resource, error);
 }
 
 struct insert_context {
@@ -122,11 +139,13 @@ static enum talus_status key_write(sqlite3 *database, const struct insert_contex
                                    struct talus_error *error)
 {
     sqlite3_stmt *statement = store_prepare(
-        database, "INSERT INTO idempotency (key, owner, body, job) VALUES (?, '', ?, ?)", error);
+        database, "INSERT INTO request_keys (key, owner, body, resource) VALUES (?, ?, ?, ?)",
+        error);
     if (statement != NULL) {
         (void)sqlite3_bind_text(statement, 1, insert->key->key, -1, SQLITE_STATIC);
-        (void)sqlite3_bind_text(statement, 2, insert->key->body, -1, SQLITE_STATIC);
-        (void)sqlite3_bind_text(statement, 3, insert->job->id, -1, SQLITE_STATIC);
+        (void)sqlite3_bind_text(statement, 2, insert->key->owner, -1, SQLITE_STATIC);
+        (void)sqlite3_bind_text(statement, 3, insert->key->body, -1, SQLITE_STATIC);
+        (void)sqlite3_bind_text(statement, 4, insert->job->id, -1, SQLITE_STATIC);
     }
     return store_finish(database, statement, error);
 }
@@ -187,13 +206,8 @@ static enum talus_status change_apply(sqlite3 *database, void *context, struct t
     status = store_row_write(database, &change->job, error);
     if (status == TALUS_OK && change->job.transition_count > transition_count)
         status = transition_write(database, &change->job, error);
-    if (status == TALUS_OK && change->job.deleting) {
-        sqlite3_stmt *statement =
-            store_prepare(database, "DELETE FROM idempotency WHERE job = ?", error);
-        if (statement != NULL)
-            (void)sqlite3_bind_text(statement, 1, change->id, -1, SQLITE_STATIC);
-        status = store_finish(database, statement, error);
-    }
+    if (status == TALUS_OK && change->job.deleting)
+        status = keys_remove(database, change->id, error);
     return status;
 }
 
@@ -213,10 +227,9 @@ enum talus_status store_job_change(struct store *store, const char *id,
 
 static enum talus_status remove_apply(sqlite3 *database, void *context, struct talus_error *error)
 {
-    sqlite3_stmt *statement = store_prepare(database, "DELETE FROM jobs WHERE id = ?", error);
-    if (statement != NULL)
-        (void)sqlite3_bind_text(statement, 1, context, -1, SQLITE_STATIC);
-    return store_finish(database, statement, error);
+    enum talus_status status = keys_remove(database, context, error);
+    return status == TALUS_OK ? run_for(database, "DELETE FROM jobs WHERE id = ?", context, error)
+                              : status;
 }
 
 enum talus_status store_job_remove(struct store *store, const char *id, struct talus_error *error)

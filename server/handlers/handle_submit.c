@@ -213,6 +213,7 @@ static bool key_read(struct request *request, const json_t *body, struct store_k
         reply_error(&request->reply, request->raw, &error);
         return false;
     }
+    key->owner = request->principal.name;
     key->key = value;
     key->body = checksum;
     return true;
@@ -240,7 +241,8 @@ static void submit(struct request *request, struct submission *submission)
     if (!submission_check(request, submission) || !disk_check(request, submission))
         return;
     const json_t *effective = json_object_get(submission->answer, "effective");
-    if (jobs_create(service, &submission->job, effective, key.key == NULL ? NULL : &key, &known,
+    if (job_text_set(&submission->job.owner, request->principal.name, &error) != TALUS_OK ||
+        jobs_create(service, &submission->job, effective, key.key == NULL ? NULL : &key, &known,
                     existing, &error) != TALUS_OK)
         reply_error(&request->reply, request->raw, &error);
     else if (known != STORE_INSERTED)

@@ -42,7 +42,7 @@ static enum store_insert insert(struct store *store, const char *id, const char 
     struct talus_error error = {0};
     enum store_insert result;
     struct job job = fixture_job(id);
-    const struct store_key both = {.key = key, .body = body};
+    const struct store_key both = {.owner = "", .key = key, .body = body};
     assert_int_equal(store_job_insert(store, &job, key == NULL ? NULL : &both, queue_limit, &result,
                                       existing, &error),
                      TALUS_OK);
@@ -97,7 +97,8 @@ static void test_keys(void **state)
     assert_int_equal(insert(fixture->store, "j3", "k", "other", 0, existing), STORE_OTHER_BODY);
     assert_int_equal(store_job_read(fixture->store, "j2", &job, &error), TALUS_INVALID);
     assert_string_equal(error.code, "not_found");
-    const struct store_key key = {.key = "k", .body = "b"}, unknown = {.key = "x", .body = "b"};
+    const struct store_key key = {.owner = "", .key = "k", .body = "b"},
+                           unknown = {.owner = "", .key = "x", .body = "b"};
     assert_int_equal(store_key_find(fixture->store, &key, &result, existing, &error), TALUS_OK);
     assert_int_equal(result, STORE_REPLAYED);
     assert_int_equal(store_key_find(fixture->store, &unknown, &result, existing, &error), TALUS_OK);

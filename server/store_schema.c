@@ -1,0 +1,115 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* The tables of the store. Everything here may run on a database of any age: what is missing is
+ * added, so that a new column of a job is one line in job_columns.def and a new table one entry
+ * below. The format's number grows only when older daemons must not touch what newer ones write. */
+#include "store_internal.h"
+#include "text.h"
+
+#include <string.h>
+
+enum { SCHEMA_VERSION = 2 };
+
+struct column {
+    const char *name, *declaration;
+};
+
+static const struct column job_columns[] = {
+#define JOB_TEXT(name) {#name, #name " TEXT"},
+#define JOB_INTEGER(name) {#name, #name " INTEGER NOT NULL DEFAULT 0"},
+#define JOB_REAL(name) {#name, #name " REAL NOT NULL DEFAULT 0"},
+#include "job_columns.def"
+#undef JOB_TEXT
+#undef JOB_INTEGER
+#undef JOB_REAL
+};
+
+/* In order: an index comes behind the columns it is over, which jobs_prepare has added. */
+static const char *const parts[] = {
+    "CREATE INDEX IF NOT EXISTS jobs_by_state ON jobs (state, priority DESC, id)",
+    "CREATE TABLE IF NOT EXISTS transitions (row INTEGER PRIMARY KEY AUTOINCREMENT,"
+    " job TEXT NOT NULL REFERENCES jobs (id) ON DELETE CASCADE, number INTEGER NOT NULL,"
+    " at TEXT NOT NULL, state TEXT NOT NULL, attempt INTEGER NOT NULL, reason TEXT, detail TEXT,"
+    " UNIQUE (job, number))",
+    /* Of jobs and of studies: whoever removes a resource removes its keys. */
+    "CREATE TABLE IF NOT EXISTS request_keys (key TEXT NOT NULL, owner TEXT NOT NULL,"
+    " body TEXT NOT NULL, resource TEXT NOT NULL, PRIMARY KEY (owner, key)) WITHOUT ROWID",
+    "CREATE INDEX IF NOT EXISTS request_keys_by_resource ON request_keys (resource)",
+};
+
+/* What format 1 had otherwise. */
+static const char from_1[] = "INSERT INTO request_keys (key, owner, body, resource)"
+                             " SELECT key, owner, body, job FROM idempotency;"
+                             "DROP TABLE idempotency;"
+                             "UPDATE jobs SET owner = '' WHERE owner IS NULL;";
+
+static bool column_exists(sqlite3 *database, const char *name, bool *exists)
+{
+    sqlite3_stmt *statement = NULL;
+    if (sqlite3_prepare_v2(database, "SELECT 1 FROM pragma_table_info('jobs') WHERE name = ?", -1,
+                           &statement, NULL) != SQLITE_OK)
+        return false;
+    (void)sqlite3_bind_text(statement, 1, name, -1, SQLITE_STATIC);
+    int step = sqlite3_step(statement);
+    *exists = step == SQLITE_ROW;
+    (void)sqlite3_finalize(statement);
+    return step == SQLITE_ROW || step == SQLITE_DONE;
+}
+
+static bool jobs_prepare(sqlite3 *database)
+{
+    bool good = store_execute(database, "CREATE TABLE IF NOT EXISTS jobs (id TEXT PRIMARY KEY)"
+                                        " WITHOUT ROWID");
+    for (size_t index = 0; good && index < sizeof job_columns / sizeof job_columns[0]; index++) {
+        struct text sql = {0};
+        bool exists = false;
+        text_print(&sql, "ALTER TABLE jobs ADD COLUMN %s", job_columns[index].declaration);
+        good = !sql.failed && column_exists(database, job_columns[index].name, &exists) &&
+               (exists || store_execute(database, sql.data));
+        text_release(&sql);
+    }
+    return good;
+}
+
+static bool tables_prepare(sqlite3 *database, int version)
+{
+    struct text sql = {0};
+    bool good = jobs_prepare(database);
+    for (size_t index = 0; good && index < sizeof parts / sizeof parts[0]; index++)
+        good = store_execute(database, parts[index]);
+    if (version == 1)
+        good = good && store_execute(database, from_1);
+    text_print(&sql, "PRAGMA user_version = %d", SCHEMA_VERSION);
+    good = good && !sql.failed && store_execute(database, sql.data);
+    text_release(&sql);
+    return good;
+}
+
+static int version_read(sqlite3 *database)
+{
+    struct talus_error error = {0};
+    sqlite3_stmt *statement = store_prepare(database, "PRAGMA user_version", &error);
+    int version = statement != NULL && sqlite3_step(statement) == SQLITE_ROW
+                      ? sqlite3_column_int(statement, 0)
+                      : -1;
+    (void)sqlite3_finalize(statement);
+    return version;
+}
+
+enum talus_status store_schema_prepare(sqlite3 *database, struct talus_error *error)
+{
+    int version = version_read(database);
+    if (version < 0)
+        return store_failure(database, error);
+    if (version > SCHEMA_VERSION)
+        return talus_error_set(error, TALUS_IO, "version", "",
+                               "the state was written by a newer talusd (format %d, this one "
+                               "knows up to %d)",
+                               version, SCHEMA_VERSION);
+    if (store_execute(database, "BEGIN IMMEDIATE") && tables_prepare(database, version) &&
+        store_execute(database, "COMMIT"))
+        return TALUS_OK;
+    enum talus_status status = store_failure(database, error);
+    if (sqlite3_get_autocommit(database) == 0)
+        (void)store_execute(database, "ROLLBACK");
+    return status;
+}
