@@ -13,7 +13,8 @@
 #include <string.h>
 
 static const struct route routes[] = {
-#define ROUTE(method, path, lane, handler) {#method, path, LANE_##lane, handle_##handler},
+#define ROUTE(method, path, lane, role, handler)                                                   \
+    {#method, path, LANE_##lane, ROLE_##role, handle_##handler},
 #include "routes.def"
 #undef ROUTE
 };

@@ -29,6 +29,7 @@ struct request;
 struct route {
     const char *method, *path;
     enum lane lane;
+    enum role role; /* the least that a caller needs */
     enum handled (*handle)(struct request *request);
 };
 
@@ -57,7 +58,8 @@ struct request {
     struct request *next;
 };
 
-#define ROUTE(method, path, lane, handler) enum handled handle_##handler(struct request *request);
+#define ROUTE(method, path, lane, role, handler)                                                   \
+    enum handled handle_##handler(struct request *request);
 #include "routes.def"
 #undef ROUTE
 

@@ -4,7 +4,7 @@
 #define TALUS_REQUEST_PRINCIPAL_H
 
 /* Each role may do what those before it may. */
-enum role { ROLE_READ, ROLE_SUBMIT, ROLE_ADMIN };
+enum role { ROLE_ANYONE, ROLE_READ, ROLE_SUBMIT, ROLE_ADMIN };
 
 struct principal {
     char name[64]; /* of the token, "" for a local user without one */

@@ -62,7 +62,7 @@ class OtherRules(unittest.TestCase):
         without_line = dict(listed)
         without_line["solver/materials/tresca.c"] = "const struct material tresca = {\n"
         self.assertEqual(len(check_definitions(without_line)), 1)
-        routes = {"server/routes.def": 'ROUTE(GET, "v1/jobs/*", QUICK, job)\n',
+        routes = {"server/routes.def": 'ROUTE(GET, "v1/jobs/*", QUICK, READ, job)\n',
                   "server/handlers/handle_job.c": "enum handled handle_job(struct request *r)\n"}
         self.assertEqual(check_definitions(routes), [])
         routes["server/handlers/handle_log.c"] = "enum handled handle_log(struct request *r)\n"
