@@ -34,6 +34,15 @@ enum talus_status store_finish(sqlite3 *database, sqlite3_stmt *statement,
     return status;
 }
 
+enum talus_status store_run_for(sqlite3 *database, const char *sql, const char *id,
+                                struct talus_error *error)
+{
+    sqlite3_stmt *statement = store_prepare(database, sql, error);
+    if (statement != NULL)
+        (void)sqlite3_bind_text(statement, 1, id, -1, SQLITE_STATIC);
+    return store_finish(database, statement, error);
+}
+
 bool store_execute(sqlite3 *database, const char *sql)
 {
     return sqlite3_exec(database, sql, NULL, NULL, NULL) == SQLITE_OK;

@@ -37,6 +37,17 @@ sqlite3_stmt *store_prepare(sqlite3 *database, const char *sql, struct talus_err
 /* Steps a statement that returns no rows, then finalizes it (NULL fails). */
 TALUS_MUST_CHECK enum talus_status store_finish(sqlite3 *database, sqlite3_stmt *statement,
                                                 struct talus_error *error);
+/* Runs a statement that returns nothing and has one parameter. */
+TALUS_MUST_CHECK enum talus_status store_run_for(sqlite3 *database, const char *sql, const char *id,
+                                                 struct talus_error *error);
+/* Looks a key up, notes whose resource it is, forgets all keys of a resource (store_job.c). */
+TALUS_MUST_CHECK enum talus_status store_key_look(sqlite3 *database, const struct store_key *key,
+                                                  enum store_insert *result, char existing[64],
+                                                  struct talus_error *error);
+TALUS_MUST_CHECK enum talus_status store_key_write(sqlite3 *database, const struct store_key *key,
+                                                   const char *resource, struct talus_error *error);
+TALUS_MUST_CHECK enum talus_status store_keys_remove(sqlite3 *database, const char *resource,
+                                                     struct talus_error *error);
 /* Runs statements that return nothing. */
 bool store_execute(sqlite3 *database, const char *sql);
 enum talus_status store_failure(sqlite3 *database, struct talus_error *error);

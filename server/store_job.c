@@ -64,9 +64,9 @@ enum talus_status store_job_read(struct store *store, const char *id, struct job
     return status;
 }
 
-static enum talus_status key_find(sqlite3 *database, const struct store_key *key,
-                                  enum store_insert *result, char existing[64],
-                                  struct talus_error *error)
+enum talus_status store_key_look(sqlite3 *database, const struct store_key *key,
+                                 enum store_insert *result, char existing[64],
+                                 struct talus_error *error)
 {
     *result = STORE_INSERTED;
     sqlite3_stmt *statement = store_prepare(
@@ -91,25 +91,15 @@ enum talus_status store_key_find(struct store *store, const struct store_key *ke
                                  struct talus_error *error)
 {
     (void)pthread_mutex_lock(&store->reader_mutex);
-    enum talus_status status = key_find(store->reader, key, result, existing, error);
+    enum talus_status status = store_key_look(store->reader, key, result, existing, error);
     (void)pthread_mutex_unlock(&store->reader_mutex);
     return status;
 }
 
-/* Runs a statement with one parameter. */
-static enum talus_status run_for(sqlite3 *database, const char *sql, const char *id,
-                                 struct talus_error *error)
+enum talus_status store_keys_remove(sqlite3 *database, const char *resource,
+                                    struct talus_error *error)
 {
-    sqlite3_stmt *statement = store_prepare(database, sql, error);
-    if (statement != NULL)
-        (void)sqlite3_bind_text(statement, 1, id, -1, SQLITE_STATIC);
-    return store_finish(database, statement, error);
-}
-
-static enum talus_status keys_remove(sqlite3 *database, const char *resource,
-                                     struct talus_error *error)
-{
-    return run_for(database, "DELETE FROM request_keys WHERE resource = ?", resource, error);
+    return store_run_for(database, "DELETE FROM request_keys WHERE resource = ?", resource, error);
 }
 
 struct insert_context {
@@ -135,17 +125,17 @@ static enum talus_status queue_check(sqlite3 *database, struct insert_context *i
     return found ? TALUS_OK : store_failure(database, error);
 }
 
-static enum talus_status key_write(sqlite3 *database, const struct insert_context *insert,
-                                   struct talus_error *error)
+enum talus_status store_key_write(sqlite3 *database, const struct store_key *key,
+                                  const char *resource, struct talus_error *error)
 {
     sqlite3_stmt *statement = store_prepare(
         database, "INSERT INTO request_keys (key, owner, body, resource) VALUES (?, ?, ?, ?)",
         error);
     if (statement != NULL) {
-        (void)sqlite3_bind_text(statement, 1, insert->key->key, -1, SQLITE_STATIC);
-        (void)sqlite3_bind_text(statement, 2, insert->key->owner, -1, SQLITE_STATIC);
-        (void)sqlite3_bind_text(statement, 3, insert->key->body, -1, SQLITE_STATIC);
-        (void)sqlite3_bind_text(statement, 4, insert->job->id, -1, SQLITE_STATIC);
+        (void)sqlite3_bind_text(statement, 1, key->key, -1, SQLITE_STATIC);
+        (void)sqlite3_bind_text(statement, 2, key->owner, -1, SQLITE_STATIC);
+        (void)sqlite3_bind_text(statement, 3, key->body, -1, SQLITE_STATIC);
+        (void)sqlite3_bind_text(statement, 4, resource, -1, SQLITE_STATIC);
     }
     return store_finish(database, statement, error);
 }
@@ -156,7 +146,7 @@ static enum talus_status insert_apply(sqlite3 *database, void *context, struct t
     enum talus_status status = TALUS_OK;
     insert->result = STORE_INSERTED;
     if (insert->key != NULL)
-        status = key_find(database, insert->key, &insert->result, insert->existing, error);
+        status = store_key_look(database, insert->key, &insert->result, insert->existing, error);
     if (status == TALUS_OK && insert->result == STORE_INSERTED && insert->queue_limit > 0)
         status = queue_check(database, insert, error);
     if (status != TALUS_OK || insert->result != STORE_INSERTED)
@@ -165,7 +155,7 @@ static enum talus_status insert_apply(sqlite3 *database, void *context, struct t
     if (status == TALUS_OK)
         status = transition_write(database, insert->job, error);
     if (status == TALUS_OK && insert->key != NULL)
-        status = key_write(database, insert, error);
+        status = store_key_write(database, insert->key, insert->job->id, error);
     return status;
 }
 
@@ -207,7 +197,7 @@ static enum talus_status change_apply(sqlite3 *database, void *context, struct t
     if (status == TALUS_OK && change->job.transition_count > transition_count)
         status = transition_write(database, &change->job, error);
     if (status == TALUS_OK && change->job.deleting)
-        status = keys_remove(database, change->id, error);
+        status = store_keys_remove(database, change->id, error);
     return status;
 }
 
@@ -227,9 +217,10 @@ enum talus_status store_job_change(struct store *store, const char *id,
 
 static enum talus_status remove_apply(sqlite3 *database, void *context, struct talus_error *error)
 {
-    enum talus_status status = keys_remove(database, context, error);
-    return status == TALUS_OK ? run_for(database, "DELETE FROM jobs WHERE id = ?", context, error)
-                              : status;
+    enum talus_status status = store_keys_remove(database, context, error);
+    return status == TALUS_OK
+               ? store_run_for(database, "DELETE FROM jobs WHERE id = ?", context, error)
+               : status;
 }
 
 enum talus_status store_job_remove(struct store *store, const char *id, struct talus_error *error)

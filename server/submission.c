@@ -37,9 +37,8 @@ static int64_t integer_read(const json_t *object, const char *key, const char *p
     return (int64_t)number;
 }
 
-/* Adds an issue for every key of an object that is not in a list. */
-static void unknown_keys(const json_t *object, const char *parent, const char *const *known,
-                         json_t *errors)
+void submission_keys_check(const json_t *object, const char *parent, const char *const *known,
+                           json_t *errors)
 {
     const char *key;
     json_t *value;
@@ -116,7 +115,7 @@ static void limits_read(const json_t *body, struct job *job, json_t *errors)
         issue_add(errors, "/limits", "type", limits, NULL, "an object is wanted");
         return;
     }
-    unknown_keys(limits, "/limits", known, errors);
+    submission_keys_check(limits, "/limits", known, errors);
     const json_t *wall = json_object_get(limits, "wall_seconds");
     job->wall_limit = json_number_value(wall);
     if (wall != NULL && (!json_is_number(wall) || job->wall_limit < 1e-3 || job->wall_limit > 1e9))
@@ -137,7 +136,7 @@ void submission_read(const json_t *body, int64_t workers, struct job *job, const
         issue_add(errors, "", "type", NULL, NULL, "the body must be an object");
         return;
     }
-    unknown_keys(body, "", known, errors);
+    submission_keys_check(body, "", known, errors);
     if (*scene == NULL)
         issue_add(errors, "/scene", "required", NULL, NULL, "the scene is missing");
     name_read(body, job, errors);

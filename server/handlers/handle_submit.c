@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* POST /v1/jobs and POST /v1/forecast: a scene is checked by a helper before it becomes a job. */
+#include "admission.h"
 #include "body.h"
-#include "checksum.h"
 #include "helper.h"
 #include "jobs.h"
 #include "request.h"
@@ -10,12 +10,10 @@
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
-#include <sys/statvfs.h>
 
 /* With `threads` 0 every so many particles get a thread: below that, threads cost more than they
  * give. */
 static const double particles_per_thread = 20000;
-enum { KEY_BYTES_MAX = 255 };
 
 /* What a submission has become so far. */
 struct submission {
@@ -29,29 +27,6 @@ static void submission_release(struct submission *submission)
     json_decref(submission->answer);
     json_decref(submission->errors);
     job_release(&submission->job);
-}
-
-/* Adds the helper's errors, whose pointers go into the scene. */
-static void errors_prefix(json_t *errors, const json_t *found)
-{
-    size_t index;
-    json_t *issue;
-    json_array_foreach(found, index, issue)
-    {
-        const char *pointer = json_string_value(json_object_get(issue, "pointer"));
-        json_t *copy = json_copy(issue);
-        json_t *full = json_sprintf("/scene%s", pointer == NULL ? "" : pointer);
-        (void)json_object_set_new(copy, "pointer", full);
-        (void)json_array_append_new(errors, copy);
-    }
-}
-
-static void problem_invalid(struct request *request, struct submission *submission)
-{
-    size_t count = json_array_size(submission->errors);
-    reply_problem(&request->reply, MHD_HTTP_UNPROCESSABLE_CONTENT, "invalid", request->raw,
-                  json_incref(submission->errors), "the request has %zu mistake%s", count,
-                  count == 1 ? "" : "s");
 }
 
 /* The number of threads that the forecast says pay. */
@@ -102,7 +77,8 @@ static bool scene_check(struct request *request, struct submission *submission, 
         reply_error(&request->reply, request->raw, &error);
         return false;
     } else if (!json_is_true(json_object_get(submission->answer, "ok"))) {
-        errors_prefix(submission->errors, json_object_get(submission->answer, "errors"));
+        admission_errors(submission->errors, json_object_get(submission->answer, "errors"),
+                         "/scene");
         if (json_array_size(submission->errors) == 0)
             issue_add(submission->errors, "/scene", "invalid", NULL, NULL, "the scene is refused");
     }
@@ -126,7 +102,7 @@ static bool submission_check(struct request *request, struct submission *submiss
     if (scene != NULL && !scene_check(request, submission, scene))
         return false;
     if (json_array_size(submission->errors) > 0) {
-        problem_invalid(request, submission);
+        admission_refused(request, submission->errors);
         return false;
     }
     if (submission->job.threads == 0)
@@ -136,32 +112,6 @@ static bool submission_check(struct request *request, struct submission *submiss
         return false;
     }
     return true;
-}
-
-static bool refused_while_draining(struct request *request)
-{
-    if (!atomic_load(&request->service->draining))
-        return false;
-    reply_problem(&request->reply, MHD_HTTP_SERVICE_UNAVAILABLE, "draining", request->raw, NULL,
-                  "the daemon is stopping; its jobs go on under the next one");
-    return true;
-}
-
-/* Whether the results would fit. False: the reply is made. */
-static bool disk_check(struct request *request, const struct submission *submission)
-{
-    struct statvfs disk;
-    const json_t *forecast = json_object_get(submission->answer, "forecast");
-    double wanted = json_number_value(json_object_get(forecast, "disk_bytes"));
-    if (statvfs(request->service->state, &disk) != 0)
-        return true;
-    double left = (double)disk.f_bavail * (double)disk.f_frsize -
-                  request->service->config->disk_reserve_bytes;
-    if (wanted <= left)
-        return true;
-    reply_problem(&request->reply, MHD_HTTP_INSUFFICIENT_STORAGE, "disk", request->raw, NULL,
-                  "the results need %.3g bytes and %.3g are free", wanted, left < 0 ? 0 : left);
-    return false;
 }
 
 static void reply_job(struct request *request, unsigned int status, const struct job *job,
@@ -196,27 +146,11 @@ static void reply_known(struct request *request, enum store_insert known, const 
     }
 }
 
-/* Reads the Idempotency-Key; key->key stays NULL without one. False: the reply is made. */
-static bool key_read(struct request *request, const json_t *body, struct store_key *key,
-                     char checksum[CHECKSUM_SIZE])
+/* What the forecast says the results take. */
+static double disk_bytes(const struct submission *submission)
 {
-    struct talus_error error = {0};
-    const char *value = request_header(request, "Idempotency-Key");
-    if (value == NULL)
-        return true;
-    if (value[0] == '\0' || strlen(value) > KEY_BYTES_MAX) {
-        reply_problem(&request->reply, MHD_HTTP_BAD_REQUEST, "idempotency_key", request->raw, NULL,
-                      "an Idempotency-Key has 1 to %d bytes", KEY_BYTES_MAX);
-        return false;
-    }
-    if (checksum_json(body, checksum, &error) != TALUS_OK) {
-        reply_error(&request->reply, request->raw, &error);
-        return false;
-    }
-    key->owner = request->principal.name;
-    key->key = value;
-    key->body = checksum;
-    return true;
+    const json_t *forecast = json_object_get(submission->answer, "forecast");
+    return json_number_value(json_object_get(forecast, "disk_bytes"));
 }
 
 static void submit(struct request *request, struct submission *submission)
@@ -227,7 +161,7 @@ static void submit(struct request *request, struct submission *submission)
     char checksum[CHECKSUM_SIZE], existing[64];
     enum store_insert known = STORE_INSERTED;
     submission->body = body_json(request);
-    if (submission->body == NULL || !key_read(request, submission->body, &key, checksum))
+    if (submission->body == NULL || !admission_key(request, submission->body, &key, checksum))
         return;
     if (key.key != NULL &&
         store_key_find(service->store, &key, &known, existing, &error) != TALUS_OK) {
@@ -238,7 +172,7 @@ static void submit(struct request *request, struct submission *submission)
         reply_known(request, known, existing);
         return;
     }
-    if (!submission_check(request, submission) || !disk_check(request, submission))
+    if (!submission_check(request, submission) || !admission_disk(request, disk_bytes(submission)))
         return;
     const json_t *effective = json_object_get(submission->answer, "effective");
     if (job_text_set(&submission->job.owner, request->principal.name, &error) != TALUS_OK ||
@@ -254,7 +188,7 @@ static void submit(struct request *request, struct submission *submission)
 enum handled handle_submit(struct request *request)
 {
     struct submission submission = {.errors = json_array()};
-    if (!refused_while_draining(request))
+    if (!admission_draining(request))
         submit(request, &submission);
     submission_release(&submission);
     return HANDLED;

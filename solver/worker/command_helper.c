@@ -20,6 +20,38 @@ static json_t *answer_check(const json_t *question)
     return check_answer(scene, threads < 1 || threads > 4096 ? 1 : (int)threads);
 }
 
+/* Many scenes in one question, for studies: of what a scene is found to be only what a row of a
+ * study needs. With `stop_after` mistaken scenes the rest is not looked at. */
+static json_t *answer_check_many(const json_t *question)
+{
+    const json_t *scenes = json_object_get(question, "scenes");
+    json_int_t threads = json_integer_value(json_object_get(question, "threads"));
+    json_int_t stop_after = json_integer_value(json_object_get(question, "stop_after"));
+    json_t *answers = json_array();
+    json_int_t mistaken = 0;
+    size_t index;
+    const json_t *scene;
+    if (!json_is_array(scenes)) {
+        json_decref(answers);
+        return check_answer_error("", "required", "'scenes' is required: an array");
+    }
+    json_array_foreach(scenes, index, scene)
+    {
+        json_t *answer = check_answer(scene, threads < 1 || threads > 4096 ? 1 : (int)threads);
+        (void)json_object_del(answer, "effective");
+        (void)json_object_del(answer, "advice");
+        (void)json_object_del(answer, "warnings");
+        mistaken += !json_is_true(json_object_get(answer, "ok"));
+        if (json_array_append_new(answers, answer) != 0) {
+            json_decref(answers);
+            return NULL;
+        }
+        if (stop_after > 0 && mistaken >= stop_after)
+            break;
+    }
+    return json_pack("{s:b, s:o}", "ok", 1, "answers", answers);
+}
+
 static json_t *answer_describe(const json_t *question)
 {
     (void)question;
@@ -74,10 +106,8 @@ static const struct operation {
     const char *name;
     json_t *(*answer)(const json_t *question);
 } operations[] = {
-    {"check", answer_check},
-    {"describe", answer_describe},
-    {"schema", answer_schema},
-    {"render", answer_render},
+    {"check", answer_check},   {"check_many", answer_check_many}, {"describe", answer_describe},
+    {"schema", answer_schema}, {"render", answer_render},
 };
 enum { OPERATION_COUNT = sizeof operations / sizeof operations[0] };
 
@@ -94,8 +124,8 @@ static json_t *answer_question(const char *line, size_t length)
             answer = operations[index].answer(question);
     }
     if (answer == NULL)
-        answer =
-            check_answer_error("/op", "unknown_value", "'op' is check, describe, schema or render");
+        answer = check_answer_error("/op", "unknown_value",
+                                    "'op' is check, check_many, describe, schema or render");
     json_decref(question);
     return answer;
 }

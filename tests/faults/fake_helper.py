@@ -39,6 +39,16 @@ def check(question):
             "hash": hashlib.sha256(hashed.encode()).hexdigest()}
 
 
+def check_many(question):
+    """What the daemon asks about the rows of a study."""
+    answers = []
+    for scene in question["scenes"]:
+        answer = check({"scene": scene})
+        answers.append({key: answer[key] for key in ("ok", "errors", "forecast", "hash")
+                        if key in answer})
+    return {"ok": True, "answers": answers}
+
+
 def refuse(pointer, code, detail):
     return {"ok": False, "errors": [{"pointer": pointer, "code": code, "detail": detail}]}
 
@@ -102,6 +112,8 @@ def serve(side):
         operation = question["op"]
         if operation == "check":
             answer = check(question)
+        elif operation == "check_many":
+            answer = check_many(question)
         elif operation == "render":
             answer = render(question, side)
         elif operation == "schema":

@@ -1,0 +1,76 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+#include "admission.h"
+
+#include "service.h"
+
+#include <string.h>
+#include <sys/statvfs.h>
+
+enum { KEY_BYTES_MAX = 255 };
+
+bool admission_draining(struct request *request)
+{
+    if (!atomic_load(&request->service->draining))
+        return false;
+    reply_problem(&request->reply, MHD_HTTP_SERVICE_UNAVAILABLE, "draining", request->raw, NULL,
+                  "the daemon is stopping; its jobs go on under the next one");
+    return true;
+}
+
+bool admission_key(struct request *request, const json_t *body, struct store_key *key,
+                   char checksum[CHECKSUM_SIZE])
+{
+    struct talus_error error = {0};
+    const char *value = request_header(request, "Idempotency-Key");
+    if (value == NULL)
+        return true;
+    if (value[0] == '\0' || strlen(value) > KEY_BYTES_MAX) {
+        reply_problem(&request->reply, MHD_HTTP_BAD_REQUEST, "idempotency_key", request->raw, NULL,
+                      "an Idempotency-Key has 1 to %d bytes", KEY_BYTES_MAX);
+        return false;
+    }
+    if (checksum_json(body, checksum, &error) != TALUS_OK) {
+        reply_error(&request->reply, request->raw, &error);
+        return false;
+    }
+    key->owner = request->principal.name;
+    key->key = value;
+    key->body = checksum;
+    return true;
+}
+
+bool admission_disk(struct request *request, double bytes)
+{
+    struct statvfs disk;
+    if (statvfs(request->service->state, &disk) != 0)
+        return true;
+    double left = (double)disk.f_bavail * (double)disk.f_frsize -
+                  request->service->config->disk_reserve_bytes;
+    if (bytes <= left)
+        return true;
+    reply_problem(&request->reply, MHD_HTTP_INSUFFICIENT_STORAGE, "disk", request->raw, NULL,
+                  "the results need %.3g bytes and %.3g are free", bytes, left < 0 ? 0 : left);
+    return false;
+}
+
+void admission_errors(json_t *errors, const json_t *found, const char *prefix)
+{
+    size_t index;
+    json_t *issue;
+    json_array_foreach(found, index, issue)
+    {
+        const char *pointer = json_string_value(json_object_get(issue, "pointer"));
+        json_t *copy = json_copy(issue);
+        json_t *full = json_sprintf("%s%s", prefix, pointer == NULL ? "" : pointer);
+        (void)json_object_set_new(copy, "pointer", full);
+        (void)json_array_append_new(errors, copy);
+    }
+}
+
+void admission_refused(struct request *request, json_t *errors)
+{
+    size_t count = json_array_size(errors);
+    reply_problem(&request->reply, MHD_HTTP_UNPROCESSABLE_CONTENT, "invalid", request->raw,
+                  json_incref(errors), "the request has %zu mistake%s", count,
+                  count == 1 ? "" : "s");
+}
