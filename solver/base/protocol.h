@@ -22,7 +22,8 @@
  * Every line carries "at" and "attempt". A line is written by one write(2). The worker exits with
  * the codes below. history.json: {"columns":[{"name","unit"}],"row_bytes":8*columns}; column 0 is
  * time. SIGTERM: checkpoint and stop ("failed" with reason "cancelled"). SIGUSR1: read control.json
- * {"end_time"?,"checkpoint_now"?,"frame_now"?}. */
+ * {"end_time"?,"checkpoint_now"?,"frame_now"?}: end_time [s] holds from then on, for later attempts
+ * too; the others are counts that grow with every order (or true: now, at every look). */
 #ifndef TALUS_PROTOCOL_H
 #define TALUS_PROTOCOL_H
 

@@ -11,7 +11,12 @@
 #include <string.h>
 #include <unistd.h>
 
-enum { THREADS_MAX = 1024, ATTEMPT_MAX = 1 << 20 };
+enum { THREADS_MAX = 1024, ATTEMPT_MAX = 1 << 20, END_MOVE_MAX = 100 };
+
+struct end_moves {
+    struct job_end_move moves[END_MOVE_MAX];
+    size_t count;
+};
 
 static bool read_count(const char *text, int minimum, int maximum, int *value)
 {
@@ -68,19 +73,38 @@ static bool read_option(struct job_options *options, int letter, const char *val
     }
 }
 
-static bool read_options(int argument_count, char **arguments, struct job_options *options)
+/* S or S@STEP, behind those given before. */
+static bool read_end_move(struct end_moves *moves, const char *text)
+{
+    char *end = NULL;
+    unsigned long long step = 0;
+    double end_time = strtod(text, &end);
+    if (*text == '\0' || !(end_time > 0.0) || !isfinite(end_time))
+        return false;
+    if (*end == '@' && end[1] >= '0' && end[1] <= '9')
+        step = strtoull(end + 1, &end, 10);
+    const bool ordered = moves->count == 0 || step >= moves->moves[moves->count - 1].step;
+    if (*end != '\0' || !ordered || moves->count == END_MOVE_MAX)
+        return false;
+    moves->moves[moves->count++] = (struct job_end_move){end_time, step};
+    return true;
+}
+
+static bool read_options(int argument_count, char **arguments, struct job_options *options,
+                         struct end_moves *moves)
 {
     static const struct option known[] = {{"out", required_argument, NULL, 'o'},
                                           {"threads", required_argument, NULL, 't'},
                                           {"all-threads", no_argument, NULL, 'A'},
                                           {"attempt", required_argument, NULL, 'a'},
                                           {"wall-seconds", required_argument, NULL, 'w'},
+                                          {"end-time", required_argument, NULL, 'e'},
                                           {"resume", no_argument, NULL, 'r'},
                                           {"quiet", no_argument, NULL, 'q'},
                                           {NULL, 0, NULL, 0}};
     int letter = 0;
     while ((letter = getopt_long(argument_count, arguments, "", known, NULL)) != -1) {
-        if (!read_option(options, letter, optarg)) {
+        if (letter == 'e' ? !read_end_move(moves, optarg) : !read_option(options, letter, optarg)) {
             if (letter != '?')
                 (void)fprintf(stderr, "talus-worker run: '%s' is not allowed here\n", optarg);
             return false;
@@ -88,18 +112,21 @@ static bool read_options(int argument_count, char **arguments, struct job_option
     }
     if (optind + 1 != argument_count || options->folder == NULL) {
         (void)fputs("usage: talus-worker run SCENE.json --out DIR [--threads N] [--all-threads] "
-                    "[--attempt A] [--resume] [--wall-seconds S] [--quiet]\n",
+                    "[--attempt A] [--resume] [--wall-seconds S] [--end-time S[@STEP]] [--quiet]\n",
                     stderr);
         return false;
     }
     options->scene_path = arguments[optind];
+    options->end_moves = moves->moves;
+    options->end_move_count = moves->count;
     return true;
 }
 
 int command_run(int argument_count, char **arguments)
 {
     struct job_options options = {.threads = 1, .arguments = arguments};
-    if (!read_options(argument_count, arguments, &options))
+    struct end_moves moves = {.count = 0};
+    if (!read_options(argument_count, arguments, &options, &moves))
         return PROTOCOL_EXIT_OTHER;
     struct talus_error error = {.status = TALUS_OK};
     struct job_run run = {.options = &options,

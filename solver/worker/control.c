@@ -51,12 +51,21 @@ struct control_request control_poll(const struct control *control)
     return request;
 }
 
+/* True or false, or a count; false if it is neither. */
+static bool read_wish(const json_t *value, struct control_wish *wish)
+{
+    json_int_t count = json_integer_value(value);
+    wish->at_once = json_is_true(value);
+    wish->count = count > 0 ? (uint64_t)count : 0;
+    return value == NULL || json_is_boolean(value) || (json_is_integer(value) && count >= 0);
+}
+
 enum talus_status control_read(const char *folder, struct control_orders *orders,
                                struct talus_error *error)
 {
     char path[FILE_PATH_SIZE];
     json_error_t mistake;
-    int checkpoint_now = 0, frame_now = 0;
+    const json_t *checkpoint = NULL, *frame = NULL;
     memset(orders, 0, sizeof *orders);
     enum talus_status status = file_path(path, folder, PROTOCOL_CONTROL_FILE, error);
     if (status != TALUS_OK)
@@ -65,13 +74,15 @@ enum talus_status control_read(const char *folder, struct control_orders *orders
         return TALUS_OK;
     json_t *root = json_load_file(path, JSON_REJECT_DUPLICATES, &mistake);
     if (root == NULL ||
-        json_unpack_ex(root, &mistake, 0, "{s?F, s?b, s?b !}", "end_time", &orders->end_time,
-                       "checkpoint_now", &checkpoint_now, "frame_now", &frame_now) != 0)
+        json_unpack_ex(root, &mistake, 0, "{s?F, s?o, s?o !}", "end_time", &orders->end_time,
+                       "checkpoint_now", &checkpoint, "frame_now", &frame) != 0)
         status = talus_error_set(error, TALUS_INVALID, "control", "", "%s: %s",
                                  PROTOCOL_CONTROL_FILE, mistake.text);
+    else if (!read_wish(checkpoint, &orders->checkpoint) || !read_wish(frame, &orders->frame))
+        status = talus_error_set(error, TALUS_INVALID, "control", "",
+                                 "%s: checkpoint_now and frame_now are true, false or a count",
+                                 PROTOCOL_CONTROL_FILE);
     orders->end_time_given = json_object_get(root, "end_time") != NULL;
-    orders->checkpoint_now = checkpoint_now != 0;
-    orders->frame_now = frame_now != 0;
     json_decref(root);
     return status;
 }

@@ -8,6 +8,7 @@
 #include "talus/status.h"
 
 #include <stdbool.h>
+#include <stdint.h>
 
 struct control {
     int descriptor; /* below 0: closed */
@@ -25,9 +26,17 @@ struct control_request {
 /* What has been asked since the last call; never waits. */
 struct control_request control_poll(const struct control *control);
 
+/* How often something is wanted. A count grows with every order, so that an order that was given
+ * while nobody looked, or to an attempt that crashed, is neither lost nor carried out twice. */
+struct control_wish {
+    bool at_once;   /* `true`: whenever control.json is looked at */
+    uint64_t count; /* or a number: as soon as it exceeds what was carried out */
+};
+
 struct control_orders {
-    bool end_time_given, checkpoint_now, frame_now;
+    bool end_time_given;
     double end_time; /* [s] */
+    struct control_wish checkpoint, frame;
 };
 /* Reads control.json of the folder; no file: no orders. TALUS_INVALID if it is not as it should
  * be (an unknown key is an error). */

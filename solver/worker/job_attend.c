@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 #include "worker/job_run.h"
 
-#include <stdio.h>
 #include <stdlib.h>
 
 /* Seconds between history events; between progress lines where nobody watches. */
@@ -38,43 +37,6 @@ enum talus_status job_announce_history(struct job_run *run, struct talus_error *
     run->announced = true;
     return event_write(&run->events, PROTOCOL_HISTORY,
                        json_pack("{s:I}", "rows", (json_int_t)run->history.row_count), error);
-}
-
-static enum talus_status move_end(struct job_run *run, double end_time, struct talus_error *error)
-{
-    struct talus_simulation_state state;
-    struct talus_error refusal = {.status = TALUS_OK};
-    char text[200];
-    talus_simulation_get_state(run->simulation, &state);
-    if (end_time == state.duration)
-        return TALUS_OK;
-    enum talus_status status = talus_simulation_set_duration(run->simulation, end_time, &refusal);
-    if (status == TALUS_INVALID)
-        return job_warn(run, "control", "", refusal.text, error);
-    if (status != TALUS_OK) {
-        *error = refusal;
-        return status;
-    }
-    run->counters.steered = true;
-    (void)snprintf(text, sizeof text, "the end is moved from %g s to %g s", state.duration,
-                   end_time);
-    return job_inform(run, text, error);
-}
-
-enum talus_status job_steer(struct job_run *run, bool at_start, struct talus_error *error)
-{
-    struct control_orders orders;
-    struct talus_error mistake = {.status = TALUS_OK};
-    enum talus_status status = control_read(run->options->folder, &orders, &mistake);
-    if (status != TALUS_OK)
-        return job_warn(run, "control", "", mistake.text, error);
-    if (orders.end_time_given)
-        status = move_end(run, orders.end_time, error);
-    if (status == TALUS_OK && orders.frame_now && !at_start)
-        status = job_take_frame(run, error);
-    if (status == TALUS_OK && orders.checkpoint_now && !at_start)
-        status = job_write_checkpoint(run, error);
-    return status;
 }
 
 /* The interval between progress events, such that a run writes under 5,000 whatever it does: its

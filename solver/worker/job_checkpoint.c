@@ -8,7 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { CHECKPOINT_FORMAT = 1 };
+enum { CHECKPOINT_FORMAT = 2 };
 
 /* UINT64_MAX ("none") is -1 in JSON. */
 static json_int_t step_to_json(uint64_t step)
@@ -27,33 +27,35 @@ static json_t *counters_json(const struct job_run *run)
     const struct job_counters *counters = &run->counters;
     struct job_usage usage = job_measure(run);
     return json_pack(
-        "{s:I, s:I, s:I, s:I, s:I, s:f, s:f, s:f, s:f, s:f, s:b}", "next_sample",
+        "{s:I, s:I, s:I, s:I, s:I, s:f, s:f, s:f, s:f, s:f, s:I, s:I}", "next_sample",
         (json_int_t)counters->next_sample, "next_frame", (json_int_t)counters->next_frame,
         "sampled_step", step_to_json(counters->sampled_step), "framed_step",
         step_to_json(counters->framed_step), "progress_count", (json_int_t)counters->progress_count,
         "particle_steps", counters->particle_steps, "step_seconds", counters->step_seconds,
         "wall_seconds", usage.wall_seconds, "cpu_seconds", usage.cpu_seconds, "peak_memory_bytes",
-        usage.peak_memory_bytes, "steered", (int)counters->steered);
+        usage.peak_memory_bytes, "frame_orders", (json_int_t)counters->frame_orders,
+        "checkpoint_orders", (json_int_t)counters->checkpoint_orders);
 }
 
 static int read_counters(const json_t *root, struct job_counters *counters)
 {
     json_int_t next_sample = 0, next_frame = 0, sampled_step = 0, framed_step = 0, progress = 0;
-    int steered = 0;
+    json_int_t frames = 0, checkpoints = 0;
     /* json_unpack does not modify the value; its signature predates const. */
     int result = json_unpack(
-        (json_t *)(uintptr_t)root, "{s:I, s:I, s:I, s:I, s:I, s:F, s:F, s:F, s:F, s:F, s:b}",
+        (json_t *)(uintptr_t)root, "{s:I, s:I, s:I, s:I, s:I, s:F, s:F, s:F, s:F, s:F, s:I, s:I}",
         "next_sample", &next_sample, "next_frame", &next_frame, "sampled_step", &sampled_step,
         "framed_step", &framed_step, "progress_count", &progress, "particle_steps",
         &counters->particle_steps, "step_seconds", &counters->step_seconds, "wall_seconds",
         &counters->wall_seconds, "cpu_seconds", &counters->cpu_seconds, "peak_memory_bytes",
-        &counters->peak_memory_bytes, "steered", &steered);
+        &counters->peak_memory_bytes, "frame_orders", &frames, "checkpoint_orders", &checkpoints);
     counters->next_sample = (uint64_t)next_sample;
     counters->next_frame = (uint64_t)next_frame;
     counters->sampled_step = step_from_json(sampled_step);
     counters->framed_step = step_from_json(framed_step);
     counters->progress_count = (uint64_t)progress;
-    counters->steered = steered != 0;
+    counters->frame_orders = (uint64_t)frames;
+    counters->checkpoint_orders = (uint64_t)checkpoints;
     return result;
 }
 
@@ -65,16 +67,16 @@ struct checkpoint_task {
     size_t blob_count;
     double time; /* [s] */
     uint64_t step, row_count;
-    json_t *counters;
+    json_t *counters, *steering; /* steering: NULL where there was none */
 };
 
 static char *state_text(const struct checkpoint_task *task)
 {
     const struct job_run *run = task->run;
-    json_t *root =
-        json_pack("{s:i, s:s, s:s, s:I, s:O, s:o}", "format", CHECKPOINT_FORMAT, "scene_hash",
-                  run->scene_hash, "build", talus_build(), "row", (json_int_t)task->row_count,
-                  "counters", task->counters, "frames", frame_list_json(&run->frames));
+    json_t *root = json_pack("{s:i, s:s, s:s, s:I, s:O, s:o, s:O*}", "format", CHECKPOINT_FORMAT,
+                             "scene_hash", run->scene_hash, "build", talus_build(), "row",
+                             (json_int_t)task->row_count, "counters", task->counters, "frames",
+                             frame_list_json(&run->frames), "steering", task->steering);
     char *text = root == NULL ? NULL : json_dumps(root, JSON_COMPACT);
     json_decref(root);
     return text;
@@ -119,6 +121,7 @@ static void release_checkpoint(void *context)
     struct checkpoint_task *task = context;
     task->run->checkpoint_under_way = false;
     json_decref(task->counters);
+    json_decref(task->steering);
     free(task);
 }
 
@@ -134,7 +137,8 @@ static struct checkpoint_task *capture(struct job_run *run)
                                      .time = state.time,
                                      .step = state.step,
                                      .row_count = run->history.row_count,
-                                     .counters = counters_json(run)};
+                                     .counters = counters_json(run),
+                                     .steering = json_deep_copy(run->steering)};
     task->blobs = talus_simulation_checkpoint(run->simulation, &task->blob_count);
     run->checkpoint_under_way = true;
     if (task->blobs != NULL && task->counters != NULL)
@@ -169,6 +173,7 @@ static enum talus_status not_usable(struct talus_error *error, const char *why)
 struct restored {
     struct job_counters counters;
     struct frame_list frames;
+    json_t *steering; /* owned */
     uint64_t row;
 };
 
@@ -192,6 +197,7 @@ static enum talus_status read_state(const struct job_run *run, const char *text,
     else
         status = frame_list_read(&restored->frames, frames, error);
     restored->row = (uint64_t)row;
+    restored->steering = json_incref(json_object_get(root, "steering"));
     json_decref(root);
     return status;
 }
@@ -217,10 +223,12 @@ enum talus_status job_restore(struct job_run *run, uint64_t *row, struct talus_e
     checkpoint_release(&checkpoint);
     if (status != TALUS_OK) {
         frame_list_release(&restored.frames);
+        json_decref(restored.steering);
         return status;
     }
     run->counters = restored.counters;
     run->frames = restored.frames;
+    run->steering = restored.steering;
     *row = restored.row;
     return TALUS_OK;
 }

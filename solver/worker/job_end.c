@@ -193,6 +193,7 @@ void job_release(struct job_run *run)
     talus_simulation_destroy(run->simulation);
     talus_scene_release(&run->scene);
     json_decref(run->effective);
+    json_decref(run->steering);
     free(run->scene_text);
     free(run->last_row);
     job_log_close(&run->log);

@@ -90,7 +90,9 @@ enum talus_status job_loop(struct job_run *run, struct talus_error *error)
     struct talus_simulation_state state;
     enum talus_status status = TALUS_OK;
     talus_simulation_get_clock(run->simulation, &state);
-    while (!state.finished) {
+    status = job_repeat_moves(run, state.step, error);
+    talus_simulation_get_clock(run->simulation, &state);
+    while (status == TALUS_OK && !state.finished) {
         double begin = job_now();
         double stepped = (double)state.particle_count;
         bool settles = state.time < 0.0;
@@ -106,6 +108,8 @@ enum talus_status job_loop(struct job_run *run, struct talus_error *error)
         if (state.finished)
             break;
         status = settles ? job_take_first(run, error) : take_due(run, &state, error);
+        if (status == TALUS_OK)
+            status = job_repeat_moves(run, state.step, error);
         if (status == TALUS_OK && now - run->clock.attended >= attend_interval)
             status = job_attend(run, now, error);
         if (status != TALUS_OK)
@@ -113,7 +117,8 @@ enum talus_status job_loop(struct job_run *run, struct talus_error *error)
         /* Steering may have moved the end to the present time. */
         talus_simulation_get_clock(run->simulation, &state);
     }
-    status = job_take_sample(run, error);
+    if (status == TALUS_OK)
+        status = job_take_sample(run, error);
     if (status == TALUS_OK)
         status = job_take_frame(run, error);
     return status;

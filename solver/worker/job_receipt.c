@@ -48,25 +48,50 @@ static enum talus_status add_result(const struct job_run *run, json_t *list, con
     return TALUS_OK;
 }
 
+/* What repeats the results in a folder that holds scene.json, bit for bit; free() it, NULL when
+ * memory ran out. */
+static char *repeat_command(const struct job_run *run)
+{
+    char *command = NULL;
+    size_t length = 0, index;
+    const json_t *note;
+    FILE *stream = open_memstream(&command, &length);
+    if (stream == NULL)
+        return NULL;
+    (void)fprintf(stream, "TALUS_ISA=%s talus-worker run scene.json --out repeat --threads %d",
+                  talus_simulation_isa(), run->options->threads);
+    json_array_foreach(run->steering, index, note)
+    {
+        if (strcmp(json_string_value(json_object_get(note, "what")), "end_time") == 0)
+            (void)fprintf(stream, " --end-time %.17g@%lld",
+                          json_number_value(json_object_get(note, "to")),
+                          (long long)json_integer_value(json_object_get(note, "step")));
+    }
+    const int failed = ferror(stream);
+    if (fclose(stream) == 0 && failed == 0)
+        return command;
+    free(command);
+    return NULL;
+}
+
 /* Everything but the results; borrows `metrics`. NULL when memory ran out. */
 static json_t *make_receipt(const struct job_run *run, const char *outcome, json_t *metrics)
 {
-    char command[64], state_hash[20], at[EVENT_TIME_SIZE];
+    char state_hash[20], at[EVENT_TIME_SIZE];
     const char *build = talus_build();
     const char *compiler = strchr(build, ' ');
-    (void)snprintf(command, sizeof command, "talus-worker run scene.json --out DIR --threads %d",
-                   run->options->threads);
+    char *command = repeat_command(run);
     (void)snprintf(state_hash, sizeof state_hash, "%016llx",
                    (unsigned long long)talus_simulation_state_hash(run->simulation));
     event_time(at);
-    return json_pack("{s:s, s:s, s:s, s:s, s:s, s:s, s:i, s:i, s:b, s:s, s:s, s:s, s:O}", "outcome",
-                     outcome, "scene_hash", run->scene_hash, "build", build, "compiler",
+    return json_pack("{s:s, s:s, s:s, s:s, s:s, s:s, s:i, s:i, s:b, s:O*, s:s, s:s, s:s, s:O}",
+                     "outcome", outcome, "scene_hash", run->scene_hash, "build", build, "compiler",
                      compiler == NULL ? "unknown" : compiler + 1, "isa", talus_simulation_isa(),
                      "precision",
                      talus_simulation_precision() == TALUS_PRECISION_SINGLE ? "single" : "double",
                      "threads", run->options->threads, "attempt", run->events.attempt, "steered",
-                     (int)run->counters.steered, "command", command, "state_hash", state_hash,
-                     "finished_at", at, "metrics", metrics);
+                     run->steering != NULL, "steering", run->steering, "command", command,
+                     "state_hash", state_hash, "finished_at", at, "metrics", metrics);
 }
 
 static enum talus_status write_text(const struct job_run *run, const json_t *receipt,
@@ -97,6 +122,11 @@ static enum talus_status write_results(struct job_run *run, const json_t *receip
     free(text);
     if (status == TALUS_OK)
         status = add_result(run, results, "results.h5", error);
+    /* It holds this receipt, and with it how long the run took. */
+    if (status == TALUS_OK &&
+        json_object_set_new(json_array_get(results, json_array_size(results) - 1), "varies",
+                            json_true()) != 0)
+        status = talus_error_set(error, TALUS_MEMORY, "memory", "", "out of memory for a receipt");
     if (status == TALUS_OK)
         status = write_text(run, receipt, error);
     return status;

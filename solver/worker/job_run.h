@@ -3,6 +3,7 @@
  *
  *   job_start   folder, lock, scene, simulation (new or from a checkpoint), first row and frame
  *   job_loop    steps; rows, frames, checkpoints and events when they are due
+ *   job_steer   orders from outside
  *   job_end     audit, tables, metrics, receipt, last event
  *
  * Looking never changes the run: when rows and frames are taken depends on the simulation alone,
@@ -24,12 +25,20 @@
 #include "worker/job_lock.h"
 #include "worker/job_log.h"
 
+/* Another end of the run, ordered when it had taken `step` steps. */
+struct job_end_move {
+    double end_time; /* [s] */
+    uint64_t step;
+};
+
 struct job_options {
     const char *scene_path, *folder;
     int threads;         /* at least 1; fewer are used where more do not pay ... */
     bool all_threads;    /* ... but for this */
     int attempt;         /* 0: 1, or the one after the last in events.ndjson when resuming */
     double wall_seconds; /* of this attempt; 0: no limit */
+    const struct job_end_move *end_moves; /* [end_move_count] in the order of their steps */
+    size_t end_move_count;
     bool resume, quiet;
     char *const *arguments; /* of the sub-command, its name first */
 };
@@ -41,10 +50,10 @@ struct job_counters {
     uint64_t sampled_step, framed_step; /* step of the last row and frame; UINT64_MAX: none */
     uint64_t progress_count;            /* progress lines so far */
     double particle_steps;
-    double step_seconds;              /* wall clock inside talus_simulation_step */
-    double wall_seconds, cpu_seconds; /* of earlier attempts up to the checkpoint */
-    double peak_memory_bytes;         /* of earlier attempts */
-    bool steered;
+    double step_seconds;                      /* wall clock inside talus_simulation_step */
+    double wall_seconds, cpu_seconds;         /* of earlier attempts up to the checkpoint */
+    double peak_memory_bytes;                 /* of earlier attempts */
+    uint64_t frame_orders, checkpoint_orders; /* of control.json, carried out */
 };
 
 /* Monotonic times [s] of this attempt. */
@@ -80,6 +89,8 @@ struct job_run {
     _Atomic bool checkpoint_under_way;
     struct job_counters counters;
     struct job_clock clock;
+    size_t end_moves_made; /* of the options */
+    json_t *steering;      /* what was ordered from outside so far; NULL: nothing */
     uint64_t warning_count;
     bool announced; /* history rows that are in the file have been announced */
 };
@@ -102,14 +113,19 @@ TALUS_MUST_CHECK enum talus_status job_take_first(struct job_run *run, struct ta
 /* job_attend.c: between steps: signals, control.json, limits, checkpoints, warnings, events. */
 TALUS_MUST_CHECK enum talus_status job_attend(struct job_run *run, double now,
                                               struct talus_error *error);
-/* Applies control.json; `at_start`: only the end time. */
-TALUS_MUST_CHECK enum talus_status job_steer(struct job_run *run, bool at_start,
-                                             struct talus_error *error);
 TALUS_MUST_CHECK enum talus_status job_pass_warnings(struct job_run *run,
                                                      struct talus_error *error);
 /* All rows so far are in the file, and a history event says so. */
 TALUS_MUST_CHECK enum talus_status job_announce_history(struct job_run *run,
                                                         struct talus_error *error);
+
+/* job_steer.c */
+/* Carries out what control.json says; `at_start`: not what it wants at every look. */
+TALUS_MUST_CHECK enum talus_status job_steer(struct job_run *run, bool at_start,
+                                             struct talus_error *error);
+/* Moves the end as the options say for what steps there are by now. */
+TALUS_MUST_CHECK enum talus_status job_repeat_moves(struct job_run *run, uint64_t step,
+                                                    struct talus_error *error);
 
 /* job_checkpoint.c */
 /* A restart point of the present state, written in the background. */

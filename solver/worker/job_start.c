@@ -251,10 +251,10 @@ static enum talus_status start_in_folder(struct job_run *run, const struct scene
         status = open_history(run, row, error);
     if (status == TALUS_OK && !restored)
         status = pass_scene_warnings(run, warnings, error);
-    if (status == TALUS_OK)
-        status = job_steer(run, true, error);
     if (status == TALUS_OK && !restored)
         status = job_take_first(run, error);
+    if (status == TALUS_OK)
+        status = job_steer(run, true, error);
     return status;
 }
 
