@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 #include "submission.h"
 
+#include "json_pointer.h"
 #include "reply.h"
 #include "suggest.h"
 
@@ -44,20 +45,14 @@ void submission_keys_check(const json_t *object, const char *parent, const char 
     json_t *value;
     json_object_foreach((json_t *)object, key, value)
     {
-        char pointer[300];
+        char pointer[JSON_POINTER_SIZE];
         bool found = false;
         for (size_t index = 0; known[index] != NULL; index++)
             found = found || strcmp(known[index], key) == 0;
         if (found)
             continue;
         const char *near = suggest(key, known);
-        size_t length = (size_t)snprintf(pointer, sizeof pointer, "%s/", parent);
-        for (const char *in = key; *in != '\0' && length + 3 < sizeof pointer; in++) {
-            if (*in == '~' || *in == '/')
-                pointer[length++] = '~';
-            pointer[length++] = *in == '~' ? '0' : *in == '/' ? '1' : *in;
-        }
-        pointer[length] = '\0';
+        json_pointer_join(pointer, parent, key);
         issue_add(errors, pointer, "unknown_key", NULL, NULL, "unknown key%s%s%s",
                   near == NULL ? "" : "; did you mean \"", near == NULL ? "" : near,
                   near == NULL ? "" : "\"?");
