@@ -51,7 +51,8 @@ def check_row(row, value):
     expect(value["peak"] > 0 and value["bandwidth"] > 0, f"{name}: no ceilings")
     if row["ordering"] == "last":
         expect(value["ns_first_pass"] == value["ns_kick_nodes"] == 0, f"{name}: a first pass")
-    if row["set"] == "flow":
+    # The stable step of `last` is so short that a few hundred particles may cross nothing in a row.
+    if row["set"] == "flow" and row["ordering"] != "last":
         expect(value["crossings"] > 0, f"{name}: a flow without crossings")
     yields = CASES[row["case"]]
     expect((value["dissipation"] > 0) == (yields or "fluid" in row["case"]),
@@ -70,6 +71,11 @@ def check_complete(rows):
                 expect(any(row["case"] == name and row["ordering"] == ordering and
                            row["body"] == body and row["set"] == which for row in rows),
                        f"{name}, {ordering}, {body}: missing")
+
+
+def check_crossings_of_last(rows):
+    flows = [row for row in rows if row["set"] == "flow" and row["ordering"] == "last"]
+    expect(sum(float(row["crossings"]) for row in flows) > 0, "no flow of `last` has crossings")
 
 
 def check_stages(rows):
@@ -118,6 +124,7 @@ def main():
     check_complete(rows)
     for row in rows:
         check_row(row, numbers(row))
+    check_crossings_of_last(rows)
     check_stages(rows)
     check_equal_physics(rows)
     lines = [line for line in run.stdout.splitlines() if line.split(" ")[0] in SETS]
