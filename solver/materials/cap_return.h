@@ -19,6 +19,7 @@ struct cap {
     double tangent_invariant; /* I_t [Pa] */
     double tangent_norm;      /* |s|_t [Pa] */
 };
+ELASTICITY_COMES_FIRST(struct cap);
 
 struct cap_law { /* what the loops compute with */
     struct stiffness stiffness;

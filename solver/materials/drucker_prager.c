@@ -18,14 +18,12 @@
 #include "materials/invariants.h"
 
 struct drucker_prager {
-    struct elasticity elasticity;
-    struct hardening hardening;
+    struct hardening_solid solid;
     struct cone cone;
 };
 
 enum value {
-    VALUE_ISOTROPIC_HARDENING = CONE_VALUE_COUNT,
-    VALUE_KINEMATIC_HARDENING,
+    VALUE_ISOTROPIC_HARDENING = CONE_VALUE_COUNT, /* and the kinematic one */
 };
 
 static const struct parameter parameters[] = {
@@ -48,17 +46,9 @@ static void prepare(const double *values, void *constants)
 {
     struct drucker_prager *model = constants;
     *model = (struct drucker_prager){
-        .elasticity = elasticity_read(values),
-        .hardening = {.isotropic = values[VALUE_ISOTROPIC_HARDENING],
-                      .kinematic = values[VALUE_KINEMATIC_HARDENING]},
+        .solid = hardening_solid_read(values, VALUE_ISOTROPIC_HARDENING),
         .cone = cone_read(values),
     };
-}
-
-static double wave_speed(const void *constants)
-{
-    const struct drucker_prager *model = constants;
-    return elasticity_wave_speed(&model->elasticity);
 }
 
 struct apex_cone_law { /* what the return computes with */
@@ -77,9 +67,10 @@ static struct apex_cone_law apex_cone_law_of(const struct drucker_prager *model,
 {
     const struct cone *cone = &model->cone;
     const struct cone shearing = {.slope = cone->slope, .strength = cone->strength};
-    const double bulk = model->elasticity.bulk;
-    const double shear = 2.0 * model->elasticity.shear + 2.0 / 3.0 * model->hardening.kinematic;
-    const double isotropic = 2.0 / 3.0 * model->hardening.isotropic;
+    const double bulk = model->solid.elasticity.bulk;
+    const double shear =
+        2.0 * model->solid.elasticity.shear + 2.0 / 3.0 * model->solid.hardening.kinematic;
+    const double isotropic = 2.0 / 3.0 * model->solid.hardening.isotropic;
     return (struct apex_cone_law){
         .cone = cone_law_of(cone, bulk, shear, isotropic),
         .shearing = cone_law_of(&shearing, bulk, shear, isotropic),
@@ -157,30 +148,15 @@ static void apex_cone_return(const void *constants, const struct material_batch 
 TALUS_INLINE bool update_stress_kernel(const struct drucker_prager *model,
                                        const struct material_batch *batch, size_t components)
 {
-    const struct hardening_law hardening = hardening_law_of(&model->elasticity, &model->hardening);
+    const struct hardening_law hardening = hardening_law_of(&model->solid);
     const struct apex_cone_law law = apex_cone_law_of(model, &hardening);
-    if (model->hardening.kinematic == 0.0)
-        return hardening_update(&hardening, apex_cone_return, &law, batch, components, false, true);
-    return hardening_update(&hardening, apex_cone_return, &law, batch, components, true, true);
+    return hardening_update(&hardening, apex_cone_return, &law, batch, components, true);
 }
 
 static bool update_stress(const void *constants, const struct material_batch *batch)
 {
     const struct drucker_prager *model = constants;
     return MATERIAL_INSTANTIATE(update_stress_kernel, model, batch);
-}
-
-static void strain_energy(const void *constants, const struct material_batch *batch, real *energy)
-{
-    const struct drucker_prager *model = constants;
-    hardening_strain_energy(&model->elasticity, &model->hardening, batch, energy);
-}
-
-static void strain_from_stress(const void *constants, const double stress[SYM3_COMPONENTS],
-                               double strain[SYM3_COMPONENTS])
-{
-    const struct drucker_prager *model = constants;
-    elasticity_strain_from_stress(&model->elasticity, stress, strain);
 }
 
 const struct material drucker_prager = {
@@ -196,9 +172,9 @@ const struct material drucker_prager = {
     .constants_size = sizeof(struct drucker_prager),
     .check = check,
     .prepare = prepare,
-    .wave_speed = wave_speed,
+    .wave_speed = elasticity_wave_speed,
     .update_stress = update_stress,
-    .strain_energy = strain_energy,
-    .strain_from_stress = strain_from_stress,
+    .strain_energy = hardening_strain_energy,
+    .strain_from_stress = elasticity_strain_from_stress,
     .initial_friction_angle_deg = cone_friction_angle_deg,
 };

@@ -37,29 +37,10 @@ static void prepare(const double *values, void *constants)
     };
 }
 
-static double wave_speed(const void *constants)
-{
-    const struct cap *cap = constants;
-    return elasticity_wave_speed(&cap->elasticity);
-}
-
 static bool update_stress(const void *constants, const struct material_batch *batch)
 {
     const struct cap *cap = constants;
     return MATERIAL_INSTANTIATE(cap_update_stress, cap, batch);
-}
-
-static void strain_energy(const void *constants, const struct material_batch *batch, real *energy)
-{
-    const struct cap *cap = constants;
-    elasticity_strain_energy(&cap->elasticity, batch, energy);
-}
-
-static void strain_from_stress(const void *constants, const double stress[SYM3_COMPONENTS],
-                               double strain[SYM3_COMPONENTS])
-{
-    const struct cap *cap = constants;
-    elasticity_strain_from_stress(&cap->elasticity, stress, strain);
 }
 
 const struct material drucker_prager_cap = {
@@ -72,9 +53,9 @@ const struct material drucker_prager_cap = {
     .constants_size = sizeof(struct cap),
     .check = check,
     .prepare = prepare,
-    .wave_speed = wave_speed,
+    .wave_speed = elasticity_wave_speed,
     .update_stress = update_stress,
-    .strain_energy = strain_energy,
-    .strain_from_stress = strain_from_stress,
+    .strain_energy = elasticity_strain_energy,
+    .strain_from_stress = elasticity_strain_from_stress,
     .initial_friction_angle_deg = cone_friction_angle_deg,
 };

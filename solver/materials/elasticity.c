@@ -33,15 +33,29 @@ void elasticity_check(const double *values, struct material_issues *issues)
                            "poisson_ratio");
 }
 
-double elasticity_wave_speed(const struct elasticity *elasticity)
+size_t elasticity_check_alone(const double *values, struct material_issue *items, size_t capacity)
 {
+    struct material_issues issues = {.items = items, .capacity = capacity};
+    elasticity_check(values, &issues);
+    return issues.count;
+}
+
+void elasticity_prepare_alone(const double *values, void *constants)
+{
+    struct elasticity *elasticity = constants;
+    *elasticity = elasticity_read(values);
+}
+
+double elasticity_wave_speed(const void *constants)
+{
+    const struct elasticity *elasticity = constants;
     return sqrt((elasticity->bulk + 4.0 / 3.0 * elasticity->shear) / elasticity->density);
 }
 
-void elasticity_strain_from_stress(const struct elasticity *elasticity,
-                                   const double stress[SYM3_COMPONENTS],
+void elasticity_strain_from_stress(const void *constants, const double stress[SYM3_COMPONENTS],
                                    double strain[SYM3_COMPONENTS])
 {
+    const struct elasticity *elasticity = constants;
     double mean = (stress[0] + stress[1] + stress[2]) / 3.0;
     for (int component = 0; component < SYM3_COMPONENTS; component++) {
         double spherical = component < 3 ? mean : 0.0;
@@ -63,9 +77,10 @@ TALUS_INLINE void strain_energy_kernel(const struct elasticity *elasticity,
     }
 }
 
-void elasticity_strain_energy(const struct elasticity *elasticity,
-                              const struct material_batch *batch, real *energy)
+void elasticity_strain_energy(const void *constants, const struct material_batch *batch,
+                              real *energy)
 {
+    const struct elasticity *elasticity = constants;
     if (batch->component_count == 3)
         strain_energy_kernel(elasticity, batch, 3, energy);
     else if (batch->component_count == 4)

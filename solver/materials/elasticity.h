@@ -8,6 +8,9 @@
 #include "materials/material_issue.h"
 #include "materials/material_kernel.h"
 
+#include <assert.h>
+#include <stddef.h>
+
 struct elasticity {
     double bulk, shear; /* K, G [Pa] */
     double density;     /* reference density [kg/m^3] */
@@ -27,15 +30,22 @@ enum elasticity_value {
 struct elasticity elasticity_read(const double *values);
 /* Adds a contradiction if the constants given are not one of the two pairs. */
 void elasticity_check(const double *values, struct material_issues *issues);
+/* The check and the constants of a model that has no more than these parameters. */
+size_t elasticity_check_alone(const double *values, struct material_issue *items, size_t capacity);
+void elasticity_prepare_alone(const double *values, void *constants);
+
+/* Entries of struct material for models whose constants begin with a struct elasticity. */
+#define ELASTICITY_COMES_FIRST(type)                                                               \
+    static_assert(offsetof(type, elasticity) == 0, "the elasticity comes first in " #type)
+
 /* sqrt((K + 4 G / 3) / rho) [m/s] */
-double elasticity_wave_speed(const struct elasticity *elasticity);
+double elasticity_wave_speed(const void *constants);
 /* The inverse law: strain that gives a stress. */
-void elasticity_strain_from_stress(const struct elasticity *elasticity,
-                                   const double stress[SYM3_COMPONENTS],
+void elasticity_strain_from_stress(const void *constants, const double stress[SYM3_COMPONENTS],
                                    double strain[SYM3_COMPONENTS]);
 /* K tr(e)^2 / 2 + G |dev e|^2 into energy[batch->count]. */
-void elasticity_strain_energy(const struct elasticity *elasticity,
-                              const struct material_batch *batch, real *energy);
+void elasticity_strain_energy(const void *constants, const struct material_batch *batch,
+                              real *energy);
 
 struct stiffness { /* what loops over slots compute with [Pa] */
     real shear;    /* 2 G: stress over strain of the deviators */

@@ -25,10 +25,20 @@ TALUS_INLINE void add_back_strain_energy(const struct hardening *hardening,
     }
 }
 
-void hardening_strain_energy(const struct elasticity *elasticity, const struct hardening *hardening,
-                             const struct material_batch *batch, real *energy)
+struct hardening_solid hardening_solid_read(const double *values, size_t first)
 {
-    elasticity_strain_energy(elasticity, batch, energy);
+    return (struct hardening_solid){
+        .elasticity = elasticity_read(values),
+        .hardening = {.isotropic = values[first], .kinematic = values[first + 1]},
+    };
+}
+
+void hardening_strain_energy(const void *constants, const struct material_batch *batch,
+                             real *energy)
+{
+    const struct hardening_solid *solid = constants;
+    const struct hardening *hardening = &solid->hardening;
+    elasticity_strain_energy(constants, batch, energy);
     if (hardening->kinematic == 0.0)
         return;
     if (batch->component_count == 3)

@@ -18,6 +18,13 @@ struct hardening {
     double kinematic; /* H [Pa] */
 };
 
+/* What the constants of a model with hardening begin with. */
+struct hardening_solid {
+    struct elasticity elasticity;
+    struct hardening hardening;
+};
+ELASTICITY_COMES_FIRST(struct hardening_solid);
+
 enum hardening_state {
     HARDENING_ISOTROPIC,
     HARDENING_BACK_STRAIN,
@@ -25,9 +32,12 @@ enum hardening_state {
 };
 extern const char *const hardening_state_names[HARDENING_STATE_COUNT];
 
-/* Elastic energy and that of the back strain, H/3 |a_kin|^2, which a reversed load recovers. */
-void hardening_strain_energy(const struct elasticity *elasticity, const struct hardening *hardening,
-                             const struct material_batch *batch, real *energy);
+/* Out of checked values, where the constants of hardening stand at `first`. */
+struct hardening_solid hardening_solid_read(const double *values, size_t first);
+/* Entry of struct material for models whose constants begin with a struct hardening_solid: elastic
+ * energy and that of the back strain, H/3 |a_kin|^2, which a reversed load recovers. */
+void hardening_strain_energy(const void *constants, const struct material_batch *batch,
+                             real *energy);
 
 struct hardening_law { /* what the loops compute with */
     struct stiffness stiffness;
@@ -37,9 +47,10 @@ struct hardening_law { /* what the loops compute with */
     real isotropic; /* 2/3 k: growth of the strength over the multiplier [Pa] */
 };
 
-static inline struct hardening_law hardening_law_of(const struct elasticity *elasticity,
-                                                    const struct hardening *hardening)
+static inline struct hardening_law hardening_law_of(const struct hardening_solid *solid)
 {
+    const struct elasticity *elasticity = &solid->elasticity;
+    const struct hardening *hardening = &solid->hardening;
     const double back = 2.0 / 3.0 * hardening->kinematic;
     return (struct hardening_law){
         .stiffness = elasticity_stiffness(elasticity),
@@ -161,10 +172,10 @@ TALUS_INLINE void hardening_apply(const struct hardening_law *constants,
     }
 }
 
-/* The update of a model with that return; `spherical`: it has flow along the trace. */
-TALUS_INLINE bool hardening_update(const struct hardening_law *constants, hardening_return *model,
-                                   const void *model_law, const struct material_batch *batch,
-                                   size_t components, bool kinematic, bool spherical)
+TALUS_INLINE bool hardening_update_kernel(const struct hardening_law *constants,
+                                          hardening_return *model, const void *model_law,
+                                          const struct material_batch *batch, size_t components,
+                                          bool kinematic, bool spherical)
 {
     const struct hardening_law law = *constants;
     const size_t slots = slot_count(batch);
@@ -184,6 +195,16 @@ TALUS_INLINE bool hardening_update(const struct hardening_law *constants, harden
         }
     }
     return flowed;
+}
+
+/* The update of a model with that return; `spherical`: it has flow along the trace. */
+TALUS_INLINE bool hardening_update(const struct hardening_law *law, hardening_return *model,
+                                   const void *model_law, const struct material_batch *batch,
+                                   size_t components, bool spherical)
+{
+    if (law->back > 0)
+        return hardening_update_kernel(law, model, model_law, batch, components, true, spherical);
+    return hardening_update_kernel(law, model, model_law, batch, components, false, spherical);
 }
 
 #endif

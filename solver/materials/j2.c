@@ -4,15 +4,13 @@
 #include "materials/hardening.h"
 
 struct j2 {
-    struct elasticity elasticity;
-    struct hardening hardening;
+    struct hardening_solid solid;
     double yield_stress; /* sigma_Y, uniaxial [Pa] */
 };
 
 enum value {
     VALUE_YIELD_STRESS = ELASTICITY_VALUE_COUNT,
-    VALUE_ISOTROPIC_HARDENING,
-    VALUE_KINEMATIC_HARDENING,
+    VALUE_ISOTROPIC_HARDENING, /* and the kinematic one */
 };
 
 static const struct parameter parameters[] = {
@@ -29,28 +27,13 @@ static const struct parameter parameters[] = {
     {.key = NULL},
 };
 
-static size_t check(const double *values, struct material_issue *items, size_t capacity)
-{
-    struct material_issues issues = {.items = items, .capacity = capacity};
-    elasticity_check(values, &issues);
-    return issues.count;
-}
-
 static void prepare(const double *values, void *constants)
 {
     struct j2 *j2 = constants;
     *j2 = (struct j2){
-        .elasticity = elasticity_read(values),
-        .hardening = {.isotropic = values[VALUE_ISOTROPIC_HARDENING],
-                      .kinematic = values[VALUE_KINEMATIC_HARDENING]},
+        .solid = hardening_solid_read(values, VALUE_ISOTROPIC_HARDENING),
         .yield_stress = values[VALUE_YIELD_STRESS],
     };
-}
-
-static double wave_speed(const void *constants)
-{
-    const struct j2 *j2 = constants;
-    return elasticity_wave_speed(&j2->elasticity);
 }
 
 struct j2_law {            /* what the return computes with */
@@ -84,35 +67,20 @@ static void radial_return(const void *constants, const struct material_batch *ba
 TALUS_INLINE bool update_stress_kernel(const struct j2 *j2, const struct material_batch *batch,
                                        size_t components)
 {
-    const struct hardening_law hardening = hardening_law_of(&j2->elasticity, &j2->hardening);
+    const struct hardening_law hardening = hardening_law_of(&j2->solid);
     const struct j2_law law = {
         .initial_strength = (real)(sqrt(2.0 / 3.0) * j2->yield_stress),
         .growth = hardening.growth,
         .shear = hardening.shear,
         .inverse = 1 / (hardening.shear + hardening.isotropic),
     };
-    if (j2->hardening.kinematic == 0.0)
-        return hardening_update(&hardening, radial_return, &law, batch, components, false, false);
-    return hardening_update(&hardening, radial_return, &law, batch, components, true, false);
+    return hardening_update(&hardening, radial_return, &law, batch, components, false);
 }
 
 static bool update_stress(const void *constants, const struct material_batch *batch)
 {
     const struct j2 *j2 = constants;
     return MATERIAL_INSTANTIATE(update_stress_kernel, j2, batch);
-}
-
-static void strain_energy(const void *constants, const struct material_batch *batch, real *energy)
-{
-    const struct j2 *j2 = constants;
-    hardening_strain_energy(&j2->elasticity, &j2->hardening, batch, energy);
-}
-
-static void strain_from_stress(const void *constants, const double stress[SYM3_COMPONENTS],
-                               double strain[SYM3_COMPONENTS])
-{
-    const struct j2 *j2 = constants;
-    elasticity_strain_from_stress(&j2->elasticity, stress, strain);
 }
 
 const struct material j2 = {
@@ -126,10 +94,10 @@ const struct material j2 = {
     .state_count = HARDENING_STATE_COUNT,
     .state_names = hardening_state_names,
     .constants_size = sizeof(struct j2),
-    .check = check,
+    .check = elasticity_check_alone,
     .prepare = prepare,
-    .wave_speed = wave_speed,
+    .wave_speed = elasticity_wave_speed,
     .update_stress = update_stress,
-    .strain_energy = strain_energy,
-    .strain_from_stress = strain_from_stress,
+    .strain_energy = hardening_strain_energy,
+    .strain_from_stress = elasticity_strain_from_stress,
 };

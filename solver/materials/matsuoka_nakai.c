@@ -83,10 +83,10 @@ const struct material matsuoka_nakai = {
     .constants_size = sizeof(struct matsuoka_nakai),
     .check = mobilised_check,
     .prepare = prepare,
-    .wave_speed = mobilised_wave_speed,
+    .wave_speed = elasticity_wave_speed,
     .initialise = mobilised_initialise,
     .update_stress = update_stress,
-    .strain_energy = mobilised_strain_energy,
-    .strain_from_stress = mobilised_strain_from_stress,
+    .strain_energy = elasticity_strain_energy,
+    .strain_from_stress = elasticity_strain_from_stress,
     .initial_friction_angle_deg = mobilised_initial_friction_angle_deg,
 };

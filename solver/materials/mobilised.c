@@ -89,12 +89,6 @@ void mobilised_prepare(const double *values, void *constants)
     mobilised->flow_tangent = none ? 0.0 : tan(angle_radians(values[MOBILISED_DILATION_ANGLE]));
 }
 
-double mobilised_wave_speed(const void *constants)
-{
-    const struct mobilised *mobilised = constants;
-    return elasticity_wave_speed(&mobilised->elasticity);
-}
-
 void mobilised_initialise(const void *constants, const double strain[SYM3_COMPONENTS],
                           double *history)
 {
@@ -103,20 +97,6 @@ void mobilised_initialise(const void *constants, const double strain[SYM3_COMPON
     history[MOBILISED_STATE_INVARIANT] =
         strain == NULL ? 0.0
                        : 3.0 * mobilised->elasticity.bulk * (strain[0] + strain[1] + strain[2]);
-}
-
-void mobilised_strain_energy(const void *constants, const struct material_batch *batch,
-                             real *energy)
-{
-    const struct mobilised *mobilised = constants;
-    elasticity_strain_energy(&mobilised->elasticity, batch, energy);
-}
-
-void mobilised_strain_from_stress(const void *constants, const double stress[SYM3_COMPONENTS],
-                                  double strain[SYM3_COMPONENTS])
-{
-    const struct mobilised *mobilised = constants;
-    elasticity_strain_from_stress(&mobilised->elasticity, stress, strain);
 }
 
 double mobilised_initial_friction_angle_deg(const double *values)

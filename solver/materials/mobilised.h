@@ -44,19 +44,16 @@ struct mobilised {
     double apex;                                           /* I1 at the apex, 3 c [Pa] */
 };
 
+ELASTICITY_COMES_FIRST(struct mobilised);
+
 extern const char *const mobilised_strain_measures[];
 extern const char *const mobilised_state_names[MOBILISED_STATE_COUNT];
 
 /* The parts of struct material that the models share. */
 size_t mobilised_check(const double *values, struct material_issue *items, size_t capacity);
 void mobilised_prepare(const double *values, void *constants);
-double mobilised_wave_speed(const void *constants);
 void mobilised_initialise(const void *constants, const double strain[SYM3_COMPONENTS],
                           double *history);
-void mobilised_strain_energy(const void *constants, const struct material_batch *batch,
-                             real *energy);
-void mobilised_strain_from_stress(const void *constants, const double stress[SYM3_COMPONENTS],
-                                  double strain[SYM3_COMPONENTS]);
 double mobilised_initial_friction_angle_deg(const double *values);
 
 /* Angles in force over the slots of a chunk. */

@@ -17,6 +17,7 @@ struct mohr_coulomb {
     double dilation_deg;
     double tension; /* tensile strength [Pa], INFINITY: to the apex */
 };
+ELASTICITY_COMES_FIRST(struct mohr_coulomb);
 
 enum value {
     VALUE_FRICTION_ANGLE = ELASTICITY_VALUE_COUNT,
@@ -27,8 +28,6 @@ enum value {
     VALUE_RESIDUAL_COHESION,
     VALUE_SOFTENING_RATE,
 };
-
-static const char *const state_names[] = {"plastic_shear_strain"};
 
 static const struct parameter parameters[] = {
     {.key = "friction_angle",
@@ -67,21 +66,7 @@ static const struct parameter parameters[] = {
      .maximum = 89.0,
      .default_value = NAN,
      .meaning = "friction angle after large plastic shear strain; goes with softening_rate"},
-    {.key = "residual_cohesion",
-     .symbol = "c_r",
-     .unit = "Pa",
-     .minimum = 0.0,
-     .maximum = INFINITY,
-     .default_value = NAN,
-     .meaning = "cohesion after large plastic shear strain; goes with softening_rate"},
-    {.key = "softening_rate",
-     .symbol = "eta",
-     .unit = "1",
-     .minimum = 0.0,
-     .above_minimum = true,
-     .maximum = INFINITY,
-     .default_value = NAN,
-     .meaning = "eta in value = residual + (peak - residual) exp(-eta x plastic shear strain)"},
+#include "materials/softening_parameters.def"
     {.key = NULL},
 };
 
@@ -122,12 +107,6 @@ static void prepare(const double *values, void *constants)
         .dilation_deg = values[VALUE_DILATION_ANGLE],
         .tension = isnan(tension) ? INFINITY : tension,
     };
-}
-
-static double wave_speed(const void *constants)
-{
-    const struct mohr_coulomb *model = constants;
-    return elasticity_wave_speed(&model->elasticity);
 }
 
 /* sqrt((1 + sin)/(1 - sin)) of an angle given by its tangent. */
@@ -187,19 +166,6 @@ static bool update_stress(const void *constants, const struct material_batch *ba
     return multi_surface_update(&model->elasticity, batch, surfaces_of, model, batch->history[0]);
 }
 
-static void strain_energy(const void *constants, const struct material_batch *batch, real *energy)
-{
-    const struct mohr_coulomb *model = constants;
-    elasticity_strain_energy(&model->elasticity, batch, energy);
-}
-
-static void strain_from_stress(const void *constants, const double stress[SYM3_COMPONENTS],
-                               double strain[SYM3_COMPONENTS])
-{
-    const struct mohr_coulomb *model = constants;
-    elasticity_strain_from_stress(&model->elasticity, stress, strain);
-}
-
 static double initial_friction_angle_deg(const double *values)
 {
     return values[VALUE_FRICTION_ANGLE];
@@ -213,13 +179,13 @@ const struct material mohr_coulomb = {
     .plastic = true,
     .dissipates = true,
     .state_count = 1,
-    .state_names = state_names,
+    .state_names = softening_state_names,
     .constants_size = sizeof(struct mohr_coulomb),
     .check = check,
     .prepare = prepare,
-    .wave_speed = wave_speed,
+    .wave_speed = elasticity_wave_speed,
     .update_stress = update_stress,
-    .strain_energy = strain_energy,
-    .strain_from_stress = strain_from_stress,
+    .strain_energy = elasticity_strain_energy,
+    .strain_from_stress = elasticity_strain_from_stress,
     .initial_friction_angle_deg = initial_friction_angle_deg,
 };

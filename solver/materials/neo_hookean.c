@@ -13,24 +13,6 @@
 
 static const struct parameter no_parameters[] = {{.key = NULL}};
 
-static size_t check(const double *values, struct material_issue *items, size_t capacity)
-{
-    struct material_issues issues = {.items = items, .capacity = capacity};
-    elasticity_check(values, &issues);
-    return issues.count;
-}
-
-static void prepare(const double *values, void *constants)
-{
-    struct elasticity *elasticity = constants;
-    *elasticity = elasticity_read(values);
-}
-
-static double wave_speed(const void *constants)
-{
-    return elasticity_wave_speed(constants);
-}
-
 /* E of slots begin ... begin + count - 1, and the traces of their strain. */
 struct shape_change {
     MATERIAL_ALIGNED real volumetric[MATERIAL_CHUNK]; /* tr e */
@@ -166,9 +148,9 @@ const struct material neo_hookean = {
     .summary = "compressible neo-Hookean solid, for large elastic strains",
     .parameters = no_parameters,
     .constants_size = sizeof(struct elasticity),
-    .check = check,
-    .prepare = prepare,
-    .wave_speed = wave_speed,
+    .check = elasticity_check_alone,
+    .prepare = elasticity_prepare_alone,
+    .wave_speed = elasticity_wave_speed,
     .update_stress = update_stress,
     .strain_energy = strain_energy,
     .strain_from_stress = strain_from_stress,

@@ -3,6 +3,8 @@
 
 #include "math/elementary.h"
 
+const char *const softening_state_names[1] = {"plastic_shear_strain"};
+
 struct softening softening_read(double rate)
 {
     return (struct softening){.rate = isnan(rate) ? 0.0 : rate};

@@ -7,6 +7,9 @@
 #include "materials/material_issue.h"
 #include "materials/material_kernel.h"
 
+/* Their one history variable. */
+extern const char *const softening_state_names[1];
+
 struct softening {
     double rate; /* per plastic shear strain; 0: none */
 };

@@ -8,14 +8,13 @@ struct tresca {
     struct decay cohesion; /* [Pa] */
     struct softening softening;
 };
+ELASTICITY_COMES_FIRST(struct tresca);
 
 enum value {
     VALUE_COHESION = ELASTICITY_VALUE_COUNT,
     VALUE_RESIDUAL_COHESION,
     VALUE_SOFTENING_RATE,
 };
-
-static const char *const state_names[] = {"plastic_shear_strain"};
 
 static const struct parameter parameters[] = {
     {.key = "cohesion",
@@ -27,21 +26,7 @@ static const struct parameter parameters[] = {
      .required = true,
      .default_value = NAN,
      .meaning = "undrained strength: the largest shear stress"},
-    {.key = "residual_cohesion",
-     .symbol = "c_r",
-     .unit = "Pa",
-     .minimum = 0.0,
-     .maximum = INFINITY,
-     .default_value = NAN,
-     .meaning = "cohesion after large plastic shear strain; goes with softening_rate"},
-    {.key = "softening_rate",
-     .symbol = "eta",
-     .unit = "1",
-     .minimum = 0.0,
-     .above_minimum = true,
-     .maximum = INFINITY,
-     .default_value = NAN,
-     .meaning = "eta in c = c_r + (c_peak - c_r) exp(-eta x plastic shear strain)"},
+#include "materials/softening_parameters.def"
     {.key = NULL},
 };
 
@@ -63,12 +48,6 @@ static void prepare(const double *values, void *constants)
         .cohesion = decay_read(values[VALUE_COHESION], values[VALUE_RESIDUAL_COHESION]),
         .softening = softening_read(values[VALUE_SOFTENING_RATE]),
     };
-}
-
-static double wave_speed(const void *constants)
-{
-    const struct tresca *tresca = constants;
-    return elasticity_wave_speed(&tresca->elasticity);
 }
 
 static void surfaces_of(const void *model, const real *shear, size_t count,
@@ -93,19 +72,6 @@ static bool update_stress(const void *constants, const struct material_batch *ba
     return multi_surface_update(&tresca->elasticity, batch, surfaces_of, tresca, batch->history[0]);
 }
 
-static void strain_energy(const void *constants, const struct material_batch *batch, real *energy)
-{
-    const struct tresca *tresca = constants;
-    elasticity_strain_energy(&tresca->elasticity, batch, energy);
-}
-
-static void strain_from_stress(const void *constants, const double stress[SYM3_COMPONENTS],
-                               double strain[SYM3_COMPONENTS])
-{
-    const struct tresca *tresca = constants;
-    elasticity_strain_from_stress(&tresca->elasticity, stress, strain);
-}
-
 const struct material tresca = {
     .name = "tresca",
     .reference = "Andersen and Andersen 2012, eq. 45-48 with phi = 0",
@@ -114,12 +80,12 @@ const struct material tresca = {
     .plastic = true,
     .dissipates = true,
     .state_count = 1,
-    .state_names = state_names,
+    .state_names = softening_state_names,
     .constants_size = sizeof(struct tresca),
     .check = check,
     .prepare = prepare,
-    .wave_speed = wave_speed,
+    .wave_speed = elasticity_wave_speed,
     .update_stress = update_stress,
-    .strain_energy = strain_energy,
-    .strain_from_stress = strain_from_stress,
+    .strain_energy = elasticity_strain_energy,
+    .strain_from_stress = elasticity_strain_from_stress,
 };
