@@ -30,6 +30,7 @@ DATA_LISTS = {
     "solver/explicit/courant_limits.def",
     "solver/materials/cone_parameters.def",
     "solver/materials/hardening_parameters.def",
+    "solver/materials/softening_parameters.def",
     "solver/materials/mobilised_parameters.def",
     "solver/state/particle_fields.def",
     "tests/benchmark/operation_counts.def",
