@@ -21,15 +21,12 @@ struct attempt *attempt_create(const struct job *job, const char *folder, const 
     attempt->folder = strdup(folder);
     attempt->number = job->attempt;
     attempt->threads = job->threads;
-    attempt->disk_limit = job->disk_limit;
     /* Read once: a step of the machine's clock during the run must not end it. */
     double elapsed = moment_now() - job->attempt_started;
-    if (job->wall_limit > 0)
-        attempt->wall_deadline =
-            moment_monotonic() + job->wall_limit - job->wall_used - (elapsed > 0 ? elapsed : 0);
+    attempt->wall_begin = moment_monotonic() - job->wall_used - (elapsed > 0 ? elapsed : 0);
     attempt->other_boot = job->boot == NULL || strcmp(job->boot, boot) != 0;
-    attempt->cancel_requested = job->cancel_requested != 0;
     attempt->tail.descriptor = -1;
+    (void)attempt_update(attempt, job);
     if (attempt->id != NULL && attempt->folder != NULL)
         return attempt;
     attempt_destroy(attempt);
@@ -41,9 +38,31 @@ void attempt_destroy(struct attempt *attempt)
     event_tail_close(&attempt->tail);
     json_decref(attempt->progress);
     json_decref(attempt->last);
+    free(attempt->orders);
     free(attempt->id);
     free(attempt->folder);
     free(attempt);
+}
+
+bool attempt_update(struct attempt *attempt, const struct job *job)
+{
+    bool limits =
+        attempt->memory_limit != job->memory_limit || attempt->disk_limit != job->disk_limit;
+    const char *known = attempt->orders == NULL ? "" : attempt->orders;
+    if (job->steering != NULL && strcmp(job->steering, known) != 0) {
+        char *copy = strdup(job->steering);
+        attempt->orders_pending = true;
+        if (copy != NULL) {
+            free(attempt->orders);
+            attempt->orders = copy;
+        }
+    }
+    attempt->revision = job->revision;
+    attempt->memory_limit = job->memory_limit;
+    attempt->disk_limit = job->disk_limit;
+    attempt->wall_deadline = job->wall_limit > 0 ? attempt->wall_begin + job->wall_limit : 0;
+    attempt->cancel_requested = job->cancel_requested != 0;
+    return limits;
 }
 
 /* Keeps what describes the progress and drops the envelope. */

@@ -13,8 +13,12 @@
 /* Owns texts, JSON and the tail. */
 struct attempt {
     char *id, *folder;
-    int64_t number, threads, disk_limit;
+    int64_t number, threads, memory_limit, disk_limit;
+    double wall_begin;    /* when the job would have begun without pauses (monotonic) */
     double wall_deadline; /* when limits.wall_seconds is used up (monotonic), 0: never */
+    int64_t revision;     /* of the job when it was last looked at */
+    char *orders;         /* of the job as they were then, NULL: none */
+    bool orders_pending;  /* the worker has not been told yet */
     bool other_boot;      /* it was started before the machine was */
     pid_t pid;            /* 0: adopted, known by its lock only */
     bool ended;           /* our child has ended with wait_status */
@@ -33,6 +37,9 @@ struct attempt {
 /* A new attempt of a job whose row says `running`. NULL without memory. */
 struct attempt *attempt_create(const struct job *job, const char *folder, const char *boot);
 void attempt_destroy(struct attempt *attempt);
+/* Takes over what may change while it runs: cancellation, limits, orders. Returns whether its
+ * limits of memory or disk are others now. */
+bool attempt_update(struct attempt *attempt, const struct job *job);
 /* Follows the event file. */
 void attempt_read(struct attempt *attempt);
 /* How it ended, once its processes are gone. *outcome borrows from the attempt and from *receipt

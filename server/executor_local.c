@@ -86,16 +86,33 @@ static int worker_spawn(const struct executor_task *task, const char *scene, con
     return failure;
 }
 
+/* The soft limit alone: a hard one could not be raised again. 0: as far as it goes. */
+static void process_limit(pid_t pid, enum __rlimit_resource resource, int64_t bytes)
+{
+    struct rlimit limit;
+    if (prlimit(pid, resource, NULL, &limit) != 0)
+        return;
+    limit.rlim_cur = bytes > 0 && (rlim_t)bytes < limit.rlim_max ? (rlim_t)bytes : limit.rlim_max;
+    (void)prlimit(pid, resource, &limit, NULL);
+}
+
+struct limits {
+    int64_t memory, disk;
+};
+
+static void process_limits(pid_t pid, void *context)
+{
+    const struct limits *limits = context;
+    process_limit(pid, RLIMIT_DATA, limits->memory);
+    process_limit(pid, RLIMIT_FSIZE, limits->disk);
+}
+
 static void worker_limit(pid_t pid, const struct executor_task *task)
 {
-    const struct rlimit memory = {(rlim_t)task->memory_limit, (rlim_t)task->memory_limit};
-    const struct rlimit disk = {(rlim_t)task->disk_limit, (rlim_t)task->disk_limit};
     const struct rlimit core = {0, 0};
+    struct limits limits = {.memory = task->memory_limit, .disk = task->disk_limit};
     (void)prlimit(pid, RLIMIT_CORE, &core, NULL);
-    if (task->memory_limit > 0)
-        (void)prlimit(pid, RLIMIT_DATA, &memory, NULL);
-    if (task->disk_limit > 0)
-        (void)prlimit(pid, RLIMIT_FSIZE, &disk, NULL);
+    process_limits(pid, &limits);
 }
 
 enum talus_status executor_start(const struct executor_task *task, pid_t *pid,
@@ -152,7 +169,9 @@ static bool process_has_open(const char *pid, const struct stat *file)
     return found;
 }
 
-void executor_signal_holders(const char *folder, int signal_number)
+/* Visits every other process that holds a job's lock. */
+static void holders_visit(const char *folder, void (*visit)(pid_t pid, void *context),
+                          void *context)
 {
     struct stat file;
     char *lock = folder_join(folder, PROTOCOL_LOCK_FILE);
@@ -162,15 +181,34 @@ void executor_signal_holders(const char *folder, int signal_number)
         if (entry->d_name[0] < '0' || entry->d_name[0] > '9')
             continue;
         pid_t pid = (pid_t)strtol(entry->d_name, NULL, 10);
-        if (pid == getpid() || !process_has_open(entry->d_name, &file))
-            continue;
-        pid_t group = getpgid(pid);
-        if (group > 1 && group != getpgrp())
-            (void)kill(-group, signal_number);
-        else
-            (void)kill(pid, signal_number);
+        if (pid != getpid() && process_has_open(entry->d_name, &file))
+            visit(pid, context);
     }
     if (processes != NULL)
         (void)closedir(processes);
     free(lock);
+}
+
+static void holder_signal(pid_t pid, void *context)
+{
+    const int *signal_number = context;
+    pid_t group = getpgid(pid);
+    if (group > 1 && group != getpgrp())
+        (void)kill(-group, *signal_number);
+    else
+        (void)kill(pid, *signal_number);
+}
+
+void executor_signal_holders(const char *folder, int signal_number)
+{
+    holders_visit(folder, holder_signal, &signal_number);
+}
+
+void executor_limit(pid_t pid, const char *folder, int64_t memory_limit, int64_t disk_limit)
+{
+    struct limits limits = {.memory = memory_limit, .disk = disk_limit};
+    if (pid > 0)
+        process_limits(pid, &limits);
+    else
+        holders_visit(folder, process_limits, &limits);
 }

@@ -23,6 +23,9 @@ TALUS_MUST_CHECK enum talus_status executor_start(const struct executor_task *ta
                                                   struct talus_error *error);
 /* Whether a child has ended; then *wait_status is what waitpid says. */
 bool executor_ended(pid_t pid, int *wait_status);
+/* Changes the limits of a process and its future children [bytes], 0: none; pid 0: of all processes
+ * that hold a job's lock. */
+void executor_limit(pid_t pid, const char *folder, int64_t memory_limit, int64_t disk_limit);
 /* Sends a signal to the group of a child. */
 void executor_signal(pid_t pid, int signal_number);
 /* Sends a signal to the groups of all processes that hold a job's lock: how an adopted worker is

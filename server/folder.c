@@ -89,6 +89,30 @@ enum talus_status folder_write(const char *folder, const char *name, const char 
     return status;
 }
 
+enum talus_status folder_replace(const char *folder, const char *name, const char *data,
+                                 size_t length, struct talus_error *error)
+{
+    char *aside_name = NULL, *path = folder_join(folder, name), *aside = NULL;
+    if (asprintf(&aside_name, ".%s.tmp", name) >= 0)
+        aside = folder_join(folder, aside_name);
+    enum talus_status status =
+        path == NULL || aside == NULL
+            ? talus_error_set(error, TALUS_MEMORY, "memory", "", "out of memory")
+            : TALUS_OK;
+    if (status == TALUS_OK && unlink(aside) != 0 && errno != ENOENT)
+        status = folder_error(error, "remove", aside);
+    if (status == TALUS_OK)
+        status = folder_write(folder, aside_name, data, length, error);
+    if (status == TALUS_OK && rename(aside, path) != 0)
+        status = folder_error(error, "replace", path);
+    if (status == TALUS_OK)
+        status = folder_sync(folder, error);
+    free(aside_name);
+    free(aside);
+    free(path);
+    return status;
+}
+
 static int remove_entry(const char *path, const struct stat *information, int kind,
                         struct FTW *position)
 {

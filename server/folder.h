@@ -16,6 +16,10 @@ TALUS_MUST_CHECK enum talus_status folder_make(const char *path, struct talus_er
 TALUS_MUST_CHECK enum talus_status folder_write(const char *folder, const char *name,
                                                 const char *data, size_t length,
                                                 struct talus_error *error);
+/* Writes a file aside and puts it in the place of what was there. */
+TALUS_MUST_CHECK enum talus_status folder_replace(const char *folder, const char *name,
+                                                  const char *data, size_t length,
+                                                  struct talus_error *error);
 /* Flushes a folder's entries. */
 TALUS_MUST_CHECK enum talus_status folder_sync(const char *path, struct talus_error *error);
 /* Removes a folder with all that is in it; symbolic links are removed, not followed. A folder that

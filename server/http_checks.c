@@ -162,7 +162,8 @@ static void body_check(struct request *request, const struct fields *fields)
         request->reply.close = length > 4 * limit;
         return;
     }
-    if (!http_has_body(request) || strcmp(request->route->method, "POST") != 0)
+    const char *method = request->route->method;
+    if (!http_has_body(request) || (strcmp(method, "POST") != 0 && strcmp(method, "PATCH") != 0))
         return;
     if (request_header(request, MHD_HTTP_HEADER_CONTENT_ENCODING) != NULL)
         reply_problem(&request->reply, MHD_HTTP_UNSUPPORTED_MEDIA_TYPE, "content_encoding",

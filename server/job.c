@@ -47,6 +47,18 @@ void job_release(struct job *job)
     memset(job, 0, sizeof *job);
 }
 
+json_t *job_limits_json(const struct job *job)
+{
+    json_t *limits = json_object();
+    if (job->wall_limit > 0)
+        (void)json_object_set_new(limits, "wall_seconds", json_real(job->wall_limit));
+    if (job->memory_limit > 0)
+        (void)json_object_set_new(limits, "memory_bytes", json_integer(job->memory_limit));
+    if (job->disk_limit > 0)
+        (void)json_object_set_new(limits, "disk_bytes", json_integer(job->disk_limit));
+    return limits;
+}
+
 enum talus_status job_text_set(char **text, const char *value, struct talus_error *error)
 {
     char *copy = value == NULL ? NULL : strdup(value);

@@ -55,6 +55,8 @@ void job_release(struct job *job);
 /* Replaces a text by a copy (NULL: by none). */
 TALUS_MUST_CHECK enum talus_status job_text_set(char **text, const char *value,
                                                 struct talus_error *error);
+/* Its limits as a client gives them; new reference. */
+json_t *job_limits_json(const struct job *job);
 /* Replaces a text by a JSON document. */
 TALUS_MUST_CHECK enum talus_status job_json_set(char **text, const json_t *value,
                                                 struct talus_error *error);

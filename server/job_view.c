@@ -17,18 +17,6 @@ static json_t *document_json(const char *text, const char *missing)
     return value == NULL ? json_null() : value;
 }
 
-static json_t *limits_json(const struct job *job)
-{
-    json_t *limits = json_object();
-    if (job->wall_limit > 0)
-        (void)json_object_set_new(limits, "wall_seconds", json_real(job->wall_limit));
-    if (job->memory_limit > 0)
-        (void)json_object_set_new(limits, "memory_bytes", json_integer(job->memory_limit));
-    if (job->disk_limit > 0)
-        (void)json_object_set_new(limits, "disk_bytes", json_integer(job->disk_limit));
-    return limits;
-}
-
 static json_t *links_json(const struct job *job)
 {
     static const char *const names[] = {"events", "series", "frames", "files",
@@ -64,12 +52,15 @@ json_t *jobs_json(struct service *service, const struct job *job)
     (void)json_object_set_new(view, "reason", text_json(job->reason));
     (void)json_object_set_new(view, "detail", text_json(job->detail));
     (void)json_object_set_new(view, "owner", text_json(job->owner));
+    (void)json_object_set_new(view, "reused_from", text_json(job->reused_from));
+    (void)json_object_set_new(view, "steered", json_boolean(job->steered));
+    (void)json_object_set_new(view, "steering", document_json(job->steering, "null"));
     (void)json_object_set_new(view, "cancel_requested",
                               json_boolean(job->cancel_requested && job->state == JOB_RUNNING));
     (void)json_object_set_new(view, "revision", json_integer(job->revision));
     (void)json_object_set_new(view, "priority", json_integer(job->priority));
     (void)json_object_set_new(view, "threads", json_integer(job->threads));
-    (void)json_object_set_new(view, "limits", limits_json(job));
+    (void)json_object_set_new(view, "limits", job_limits_json(job));
     (void)json_object_set_new(view, "retries", json_integer(job->retries));
     (void)json_object_set_new(view, "created_at", text_json(job->created_at));
     (void)json_object_set_new(view, "started_at", text_json(job->started_at));

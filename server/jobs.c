@@ -5,6 +5,7 @@
 #include "event_log.h"
 #include "events.h"
 #include "folder.h"
+#include "job_patch.h"
 #include "json_text.h"
 #include "supervisor.h"
 #include "waits.h"
@@ -124,6 +125,7 @@ enum talus_status jobs_create(struct service *service, struct job *job, const js
 struct guarded_change {
     int64_t revision;
     enum talus_status (*change)(struct job *job, struct talus_error *error);
+    const json_t *patch; /* instead of `change` */
 };
 
 static enum talus_status guarded_apply(struct job *job, void *context, struct talus_error *error)
@@ -133,7 +135,8 @@ static enum talus_status guarded_apply(struct job *job, void *context, struct ta
         return talus_error_set(error, TALUS_LIMIT, "revision", "",
                                "the job has changed: it is at revision %lld",
                                (long long)job->revision);
-    return guarded->change(job, error);
+    return guarded->patch != NULL ? job_patch_apply(job, guarded->patch, error)
+                                  : guarded->change(job, error);
 }
 
 static enum talus_status guarded(struct service *service, const char *id, int64_t revision,
@@ -161,6 +164,37 @@ enum talus_status jobs_resume(struct service *service, const char *id, int64_t r
                               struct job *result, struct talus_error *error)
 {
     return guarded(service, id, revision, job_resume, result, error);
+}
+
+enum talus_status jobs_orders_write(struct service *service, const char *id,
+                                    struct talus_error *error)
+{
+    struct job job = {0};
+    char *folder = jobs_folder(service, id);
+    /* One at a time, so that the last one to write has the last orders. */
+    (void)pthread_mutex_lock(&service->journal);
+    enum talus_status status =
+        folder == NULL ? out_of_memory(error) : store_job_read(service->store, id, &job, error);
+    if (status == TALUS_OK && job.steering != NULL)
+        status = folder_replace(folder, PROTOCOL_CONTROL_FILE, job.steering, strlen(job.steering),
+                                error);
+    (void)pthread_mutex_unlock(&service->journal);
+    job_release(&job);
+    free(folder);
+    return status;
+}
+
+enum talus_status jobs_patch(struct service *service, const char *id, int64_t revision,
+                             const json_t *body, struct job *result, struct talus_error *error)
+{
+    struct guarded_change context = {.revision = revision, .patch = body};
+    enum talus_status status =
+        store_job_change(service->store, id, guarded_apply, &context, result, error);
+    if (status == TALUS_OK)
+        status = jobs_orders_write(service, id, error);
+    if (status == TALUS_OK)
+        job_changed(service, id);
+    return status;
 }
 
 enum talus_status jobs_removal_complete(struct service *service, const char *id,

@@ -31,6 +31,14 @@ TALUS_MUST_CHECK enum talus_status jobs_resume(struct service *service, const ch
                                                struct talus_error *error);
 TALUS_MUST_CHECK enum talus_status jobs_delete(struct service *service, const char *id,
                                                int64_t revision, struct talus_error *error);
+/* Changes a job as a body without mistakes says (job_patch.h). Orders are in the store and in
+ * control.json when this returns; the supervisor passes them on. */
+TALUS_MUST_CHECK enum talus_status jobs_patch(struct service *service, const char *id,
+                                              int64_t revision, const json_t *body,
+                                              struct job *result, struct talus_error *error);
+/* Writes control.json as the store has it, if there are orders. */
+TALUS_MUST_CHECK enum talus_status jobs_orders_write(struct service *service, const char *id,
+                                                     struct talus_error *error);
 /* For the supervisor, which holds the job's lock: a new attempt begins, and ends. */
 TALUS_MUST_CHECK enum talus_status jobs_begin(struct service *service, const char *id,
                                               struct job *result, struct talus_error *error);

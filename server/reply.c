@@ -145,6 +145,8 @@ void reply_error(struct reply *reply, const char *instance, const struct talus_e
         status = MHD_HTTP_NOT_FOUND;
     else if (strcmp(error->code, "state") == 0)
         status = MHD_HTTP_CONFLICT;
+    else if (strcmp(error->code, "labels") == 0)
+        status = MHD_HTTP_UNPROCESSABLE_CONTENT;
     else if (strcmp(error->code, "revision") == 0)
         status = MHD_HTTP_PRECONDITION_FAILED;
     else if (strcmp(error->code, "helper") == 0 || strcmp(error->code, "busy") == 0)

@@ -121,6 +121,13 @@ static void limits_read(const json_t *body, struct job *job, json_t *errors)
                                    INT64_C(1) << 50, 0, errors);
 }
 
+void submission_settings_read(const json_t *body, struct job *job, json_t *errors)
+{
+    labels_read(body, job, errors);
+    limits_read(body, job, errors);
+    job->priority = integer_read(body, "priority", "/priority", -100, 100, 0, errors);
+}
+
 void submission_read(const json_t *body, int64_t workers, struct job *job, const json_t **scene,
                      json_t *errors)
 {
@@ -135,9 +142,7 @@ void submission_read(const json_t *body, int64_t workers, struct job *job, const
     if (*scene == NULL)
         issue_add(errors, "/scene", "required", NULL, NULL, "the scene is missing");
     name_read(body, job, errors);
-    labels_read(body, job, errors);
-    limits_read(body, job, errors);
-    job->priority = integer_read(body, "priority", "/priority", -100, 100, 0, errors);
+    submission_settings_read(body, job, errors);
     job->threads = integer_read(body, "threads", "/threads", 0, workers, 1, errors);
     job->retries = integer_read(body, "retries", "/retries", 0, 100, DEFAULT_RETRIES, errors);
     const json_t *reuse = json_object_get(body, "reuse");

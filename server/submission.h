@@ -11,6 +11,9 @@
  * the largest number of threads that can run. *scene is borrowed, NULL if it is missing. */
 void submission_read(const json_t *body, int64_t workers, struct job *job, const json_t **scene,
                      json_t *errors);
+/* The part of it that may change later, labels, limits and priority, into a job whose own are
+ * replaced. */
+void submission_settings_read(const json_t *body, struct job *job, json_t *errors);
 /* Adds an issue for every key of an object that is not in a NULL-terminated list, with the nearest
  * one that is; `parent` is the object's JSON Pointer. */
 void submission_keys_check(const json_t *object, const char *parent, const char *const *known,

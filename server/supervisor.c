@@ -92,6 +92,9 @@ enum talus_status supervisor_adopt(struct supervisor *supervisor, const char *id
 {
     struct job job = {0};
     enum talus_status status = store_job_read(supervisor->service->store, id, &job, error);
+    /* What a dead daemon noted may not have reached the file. */
+    if (status == TALUS_OK && job.steering != NULL)
+        status = jobs_orders_write(supervisor->service, id, error);
     if (status == TALUS_OK && !attempt_add(supervisor, &job, 0))
         status = talus_error_set(error, TALUS_MEMORY, "memory", "", "out of memory");
     job_release(&job);
@@ -118,9 +121,27 @@ static void attempt_stop(struct supervisor *supervisor, struct attempt *attempt,
     }
 }
 
+/* Sees to what has changed in the job, and passes it on to the worker. */
+static void attempt_refresh(struct supervisor *supervisor, struct attempt *attempt)
+{
+    struct job job = {0};
+    struct talus_error error = {0};
+    if (store_job_read(supervisor->service->store, attempt->id, &job, &error) == TALUS_OK &&
+        job.revision != attempt->revision && attempt_update(attempt, &job))
+        executor_limit(attempt->ended ? 0 : attempt->pid, attempt->folder, attempt->memory_limit,
+                       attempt->disk_limit);
+    job_release(&job);
+    /* Before its `started` line a worker may not expect a signal; it looks at its orders then. */
+    if (attempt->orders_pending && attempt->worker_started) {
+        attempt->orders_pending = false;
+        attempt_signal(attempt, SIGUSR1);
+    }
+}
+
 /* Finds reasons to stop a worker. */
 static void attempt_check(struct supervisor *supervisor, struct attempt *attempt, double now)
 {
+    attempt_refresh(supervisor, attempt);
     if (attempt->wall_deadline != 0 && now > attempt->wall_deadline && attempt->stop_reason == NULL)
         attempt->stop_reason = "time_limit";
     if (attempt->disk_limit > 0 && now >= attempt->next_disk_check) {
@@ -128,12 +149,6 @@ static void attempt_check(struct supervisor *supervisor, struct attempt *attempt
         if (folder_size(attempt->folder) > attempt->disk_limit && attempt->stop_reason == NULL)
             attempt->stop_reason = "disk_limit";
     }
-    struct job job = {0};
-    struct talus_error error = {0};
-    if (!attempt->cancel_requested &&
-        store_job_read(supervisor->service->store, attempt->id, &job, &error) == TALUS_OK)
-        attempt->cancel_requested = job.cancel_requested != 0;
-    job_release(&job);
     /* A worker that has told its end gets time to exit by itself. */
     if (attempt->last != NULL && attempt->stop_deadline <= 0)
         attempt->stop_deadline = now + supervisor->service->config->stop_seconds;
@@ -252,7 +267,11 @@ static enum talus_status attempt_begin(struct supervisor *supervisor, const char
                                             .detail = error->text,
                                             .exit_code = -1,
                                             .signal_number = -1};
-    status = lock < 0 ? TALUS_IO : executor_start(&task, &pid, error);
+    status = lock < 0 ? TALUS_IO : TALUS_OK;
+    if (status == TALUS_OK && job.steering != NULL)
+        status = jobs_orders_write(service, id, error);
+    if (status == TALUS_OK)
+        status = executor_start(&task, &pid, error);
     if (status != TALUS_OK) {
         struct talus_error second = {0};
         if (jobs_finish(service, id, lock < 0 ? &folder_gone : &not_started, &second) != TALUS_OK)

@@ -1,40 +1,32 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* GET, DELETE, cancel and resume of one job. */
+/* GET, PATCH, DELETE, cancel and resume of one job. */
+#include "admission.h"
+#include "body.h"
 #include "byte_range.h"
+#include "job_patch.h"
+#include "job_reply.h"
 #include "jobs.h"
 #include "moment.h"
 #include "request.h"
+#include "service.h"
+#include "supervisor.h"
 #include "waits.h"
 
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 enum { WAIT_SECONDS_MAX = 60 };
 
-static void etag_print(const struct job *job, char etag[32])
-{
-    (void)snprintf(etag, 32, "\"%lld\"", (long long)job->revision);
-}
-
-static void reply_job(struct request *request, const struct job *job)
-{
-    char etag[32];
-    etag_print(job, etag);
-    reply_json(&request->reply, MHD_HTTP_OK, jobs_json(request->service, job));
-    reply_header(&request->reply, MHD_HTTP_HEADER_ETAG, etag);
-}
-
 /* Whether the answer is due now; else the request is to wait. */
 static bool answer_due(const struct request *request, const struct job *job, double wait,
                        const char *known)
 {
-    char etag[32];
+    char etag[JOB_ETAG_SIZE];
     if (wait <= 0 || request->expired)
         return true;
     if (known == NULL)
         return job_state_final((enum job_state)job->state);
-    etag_print(job, etag);
+    job_etag(job, etag);
     return !etag_listed(known, etag, true);
 }
 
@@ -55,13 +47,13 @@ enum handled handle_job(struct request *request)
         if (!request_job(request, &job))
             return HANDLED;
         if (answer_due(request, &job, wait, known)) {
-            char etag[32];
-            etag_print(&job, etag);
+            char etag[JOB_ETAG_SIZE];
+            job_etag(&job, etag);
             if (known != NULL && etag_listed(known, etag, true)) {
                 reply_empty(&request->reply, MHD_HTTP_NOT_MODIFIED);
                 reply_header(&request->reply, MHD_HTTP_HEADER_ETAG, etag);
             } else {
-                reply_job(request, &job);
+                job_reply(request, MHD_HTTP_OK, &job);
             }
             job_release(&job);
             return HANDLED;
@@ -70,26 +62,6 @@ enum handled handle_job(struct request *request)
         if (waits_park(service->waits, request, mark))
             return HANDLED_PARKED;
     }
-}
-
-/* The revision that If-Match asks for, -1 for any. False: the reply is made. */
-static bool revision_read(struct request *request, int64_t *revision)
-{
-    const char *header = request_header(request, MHD_HTTP_HEADER_IF_MATCH);
-    struct job job;
-    *revision = -1;
-    if (!request_job(request, &job))
-        return false;
-    char etag[32];
-    etag_print(&job, etag);
-    bool matches = header == NULL || etag_listed(header, etag, false);
-    if (header != NULL && matches && strchr(header, '*') == NULL)
-        *revision = job.revision;
-    if (!matches)
-        reply_problem(&request->reply, MHD_HTTP_PRECONDITION_FAILED, "revision", request->raw, NULL,
-                      "the job has changed: it is at revision %lld", (long long)job.revision);
-    job_release(&job);
-    return matches;
 }
 
 /* These calls take no body but an empty object. False: the reply is made. */
@@ -115,10 +87,10 @@ job_control(struct request *request,
     int64_t revision;
     struct job job = {0};
     struct talus_error error = {0};
-    if (!body_empty(request) || !revision_read(request, &revision))
+    if (!body_empty(request) || !job_revision_read(request, &revision, NULL))
         return HANDLED;
     if (control(request->service, request->segment, revision, &job, &error) == TALUS_OK)
-        reply_job(request, &job);
+        job_reply(request, MHD_HTTP_OK, &job);
     else
         reply_error(&request->reply, request->raw, &error);
     job_release(&job);
@@ -139,11 +111,54 @@ enum handled handle_job_delete(struct request *request)
 {
     int64_t revision;
     struct talus_error error = {0};
-    if (!body_empty(request) || !revision_read(request, &revision))
+    if (!body_empty(request) || !job_revision_read(request, &revision, NULL))
         return HANDLED;
     if (jobs_delete(request->service, request->segment, revision, &error) == TALUS_OK)
         reply_empty(&request->reply, MHD_HTTP_NO_CONTENT);
     else
         reply_error(&request->reply, request->raw, &error);
+    return HANDLED;
+}
+
+/* The simulated time that a job has reached [s], as far as it has told. */
+static double time_reached(struct service *service, const struct job *job)
+{
+    json_t *progress = supervisor_progress(service->supervisor, job->id);
+    double time = json_number_value(json_object_get(progress, "time"));
+    json_decref(progress);
+    return time;
+}
+
+/* Applies a body whose form is right. */
+static void job_change(struct request *request, const json_t *body, int64_t revision)
+{
+    struct talus_error error = {0};
+    struct job job = {0};
+    if (jobs_patch(request->service, request->segment, revision, body, &job, &error) == TALUS_OK)
+        job_reply(request, MHD_HTTP_OK, &job);
+    else
+        reply_error(&request->reply, request->raw, &error);
+    job_release(&job);
+}
+
+enum handled handle_job_patch(struct request *request)
+{
+    static const char *const no_query[] = {NULL};
+    int64_t revision;
+    struct job job = {0};
+    if (!request_query_check(request, no_query) || !job_revision_read(request, &revision, &job))
+        return HANDLED;
+    json_t *body = body_json(request), *errors = json_array();
+    if (body != NULL)
+        job_patch_check(body, &job, time_reached(request->service, &job), errors);
+    if (json_array_size(errors) > 0)
+        admission_refused(request, errors);
+    else if (body != NULL && job_patch_empty(body))
+        job_reply(request, MHD_HTTP_OK, &job);
+    else if (body != NULL)
+        job_change(request, body, revision);
+    json_decref(errors);
+    json_decref(body);
+    job_release(&job);
     return HANDLED;
 }

@@ -3,6 +3,7 @@
 #include "admission.h"
 #include "body.h"
 #include "helper.h"
+#include "job_reply.h"
 #include "jobs.h"
 #include "request.h"
 #include "submission.h"
@@ -117,12 +118,10 @@ static bool submission_check(struct request *request, struct submission *submiss
 static void reply_job(struct request *request, unsigned int status, const struct job *job,
                       bool replayed)
 {
-    char location[128], etag[32];
+    char location[128];
     (void)snprintf(location, sizeof location, "/v1/jobs/%s", job->id);
-    (void)snprintf(etag, sizeof etag, "\"%lld\"", (long long)job->revision);
-    reply_json(&request->reply, status, jobs_json(request->service, job));
+    job_reply(request, status, job);
     reply_header(&request->reply, MHD_HTTP_HEADER_LOCATION, location);
-    reply_header(&request->reply, MHD_HTTP_HEADER_ETAG, etag);
     if (replayed)
         reply_header(&request->reply, "Idempotent-Replayed", "true");
 }

@@ -93,7 +93,8 @@ class Run:
         self.threads = int(options["--threads"])
         self.job = os.path.basename(os.path.abspath(self.out))
         self.row = self.frame = 0
-        self.terminated = False
+        self.terminated = self.told = False
+        self.last_row, self.counts, self.steering = None, {}, []
 
     def violation(self, text):
         append(os.path.join(self.side, "violations"),
@@ -167,6 +168,28 @@ class Run:
     def on_term(self, *_):
         self.terminated = True
 
+    def on_told(self, *_):
+        self.told = True
+
+    def obey(self):
+        """Carries out control.json as the real worker does (docs/files.md)."""
+        self.told = False
+        try:
+            with open(self.path("control.json"), encoding="utf-8") as file:
+                orders = json.load(file)
+        except FileNotFoundError:
+            return
+        if "end_time" in orders:
+            end = max(self.row, int(orders["end_time"] * self.do["rows"]))
+            if end != self.last_row:
+                self.last_row = end
+                self.steering.append({"what": "end_time", "to": orders["end_time"]})
+        for name, act in (("frame_now", self.write_frame), ("checkpoint_now", self.checkpoint)):
+            if orders.get(name, 0) > self.counts.get(name, 0):
+                self.counts[name] = orders[name]
+                self.steering.append({"what": name})
+                act()
+
     def begin(self):
         self.read_directive()
         do = self.do
@@ -176,7 +199,7 @@ class Run:
         elif do["die_of_term"]:
             handler = signal.SIG_DFL
         signal.signal(signal.SIGTERM, handler)
-        signal.signal(signal.SIGUSR1, signal.SIG_IGN)
+        signal.signal(signal.SIGUSR1, self.on_told)
         signal.signal(signal.SIGXFSZ, signal.SIG_DFL)
         self.check_lock()
         self.check_events()
@@ -206,6 +229,7 @@ class Run:
         except FileNotFoundError:
             return None
         self.row, self.frame = point["row"], point["frame"]
+        self.counts, self.steering = point["counts"], point["steering"]
         return point["step"]
 
     def drop_frames(self):
@@ -215,8 +239,9 @@ class Run:
 
     def checkpoint(self):
         point = {"row": self.row, "frame": self.frame, "step": self.row * 10}
+        whole = dict(point, counts=self.counts, steering=self.steering)
         os.fsync(self.history)
-        replace(self.path("checkpoint.h5"), json.dumps(point).encode())
+        replace(self.path("checkpoint.h5"), json.dumps(whole).encode())
         self.event("checkpoint", time=(self.row - 1) / self.do["rows"], **point)
 
     def write_frame(self):
@@ -266,8 +291,9 @@ class Run:
         if do["memory"]:
             self.ballast = bytearray(do["memory"])
         rows = do["rows"]
+        self.obey()
         begin, first = time.monotonic(), self.row
-        while self.row <= rows:
+        while self.row <= (rows if self.last_row is None else self.last_row):
             self.misbehave()
             if self.frame <= self.row * do["frames"] / max(rows, 1):
                 self.write_frame()
@@ -278,6 +304,8 @@ class Run:
                     os.write(self.events, b'garbage {"event"\n{"event":"garbage-unknown","attempt":1}\n')
                 self.event("history", rows=self.row)
                 self.progress()
+            if self.told:
+                self.obey()
             if do["checkpoint"] and self.row % do["checkpoint"] == 0:
                 self.checkpoint()
             self.pause(begin + (self.row - first) * do["seconds"] / (rows + 1))
@@ -290,6 +318,8 @@ class Run:
 
     def pause(self, until):
         while not self.terminated and time.monotonic() < until:
+            if self.told:
+                self.obey()
             time.sleep(min(0.02, max(0.0, until - time.monotonic())))
         if self.terminated:
             time.sleep(self.do["term_delay"])
@@ -304,11 +334,13 @@ class Run:
         os.write(2, b"the last line of the noise\n")
 
     def finish(self):
-        rows = self.do["rows"]
-        replace(self.path("receipt.json"), json.dumps({"rows": rows, "build": "fake"}).encode())
+        rows = self.row - 1
+        replace(self.path("receipt.json"), json.dumps(
+            {"rows": rows, "build": "fake", "steered": bool(self.steering),
+             "steering": self.steering}).encode())
         text = ",".join(name for name, _ in COLUMNS) + "\n"
         for index in range(rows + 1):
-            text += ",".join(repr(v) for v in row_values(index, rows, self.do["spike"])) + "\n"
+            text += ",".join(repr(v) for v in row_values(index, self.do["rows"], self.do["spike"])) + "\n"
         replace(self.path("history.csv"), text.encode())
         self.event("finished", metrics={"probe.runout.final": 2.0 * rows,
                                         "reaction.wall.peak": 1e6})
