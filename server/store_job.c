@@ -3,6 +3,7 @@
 #include "store.h"
 #include "store_internal.h"
 #include "store_row.h"
+#include "studies/study_rows.h"
 
 #include <assert.h>
 #include <stdio.h>
@@ -151,7 +152,9 @@ static enum talus_status insert_apply(sqlite3 *database, void *context, struct t
         status = queue_check(database, insert, error);
     if (status != TALUS_OK || insert->result != STORE_INSERTED)
         return status;
-    status = store_row_write(database, insert->job, error);
+    status = study_row_enter(database, insert->job, error);
+    if (status == TALUS_OK)
+        status = store_row_write(database, insert->job, error);
     if (status == TALUS_OK)
         status = transition_write(database, insert->job, error);
     if (status == TALUS_OK && insert->key != NULL)
@@ -196,6 +199,8 @@ static enum talus_status change_apply(sqlite3 *database, void *context, struct t
     status = store_row_write(database, &change->job, error);
     if (status == TALUS_OK && change->job.transition_count > transition_count)
         status = transition_write(database, &change->job, error);
+    if (status == TALUS_OK && change->job.transition_count > transition_count)
+        status = study_row_follow(database, &change->job, error);
     if (status == TALUS_OK && change->job.deleting)
         status = store_keys_remove(database, change->id, error);
     return status;

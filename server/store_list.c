@@ -5,6 +5,7 @@
 #include "store_row.h"
 #include "text.h"
 
+#include <stdio.h>
 #include <string.h>
 
 static void filter_sql(const struct store_filter *filter, struct text *sql)
@@ -75,6 +76,35 @@ enum talus_status store_job_list(struct store *store, const struct store_filter 
     }
     (void)pthread_mutex_unlock(&store->reader_mutex);
     text_release(&sql);
+    return status;
+}
+
+enum talus_status store_job_find_finished(struct store *store, const char *scene_hash,
+                                          const char *build, char found[64],
+                                          struct talus_error *error)
+{
+    enum talus_status status = TALUS_IO;
+    found[0] = '\0';
+    (void)pthread_mutex_lock(&store->reader_mutex);
+    sqlite3_stmt *statement =
+        store_prepare(store->reader,
+                      "SELECT id FROM jobs WHERE scene_hash = ?1 AND state = ?2 AND deleting = 0"
+                      " AND steered = 0 AND json_extract(receipt, '$.build') = ?3"
+                      " AND NOT coalesce(json_extract(receipt, '$.steered'), 0)"
+                      " ORDER BY id DESC LIMIT 1",
+                      error);
+    if (statement != NULL) {
+        (void)sqlite3_bind_text(statement, 1, scene_hash, -1, SQLITE_STATIC);
+        (void)sqlite3_bind_int(statement, 2, JOB_SUCCEEDED);
+        (void)sqlite3_bind_text(statement, 3, build, -1, SQLITE_STATIC);
+        int step = sqlite3_step(statement);
+        if (step == SQLITE_ROW)
+            (void)snprintf(found, 64, "%s", (const char *)sqlite3_column_text(statement, 0));
+        status = step == SQLITE_ROW || step == SQLITE_DONE ? TALUS_OK
+                                                           : store_failure(store->reader, error);
+        (void)sqlite3_finalize(statement);
+    }
+    (void)pthread_mutex_unlock(&store->reader_mutex);
     return status;
 }
 

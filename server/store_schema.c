@@ -34,6 +34,33 @@ static const char *const parts[] = {
     "CREATE TABLE IF NOT EXISTS request_keys (key TEXT NOT NULL, owner TEXT NOT NULL,"
     " body TEXT NOT NULL, resource TEXT NOT NULL, PRIMARY KEY (owner, key)) WITHOUT ROWID",
     "CREATE INDEX IF NOT EXISTS request_keys_by_resource ON request_keys (resource)",
+    "CREATE INDEX IF NOT EXISTS jobs_by_scene ON jobs (scene_hash, state, id)",
+    "CREATE UNIQUE INDEX IF NOT EXISTS jobs_by_study ON jobs (study, study_row)"
+    " WHERE study IS NOT NULL",
+    "CREATE TABLE IF NOT EXISTS studies (id TEXT PRIMARY KEY"
+#define ROW_STATE(ENUM, name) ", " #name " INTEGER NOT NULL DEFAULT 0"
+#define STUDY_TEXT(name) ", " #name " TEXT"
+#define STUDY_LONG_TEXT(name) ", " #name " TEXT"
+#define STUDY_INTEGER(name) ", " #name " INTEGER NOT NULL"
+#include "studies/row_states.def"
+#include "studies/study_columns.def"
+#undef ROW_STATE
+#undef STUDY_TEXT
+#undef STUDY_LONG_TEXT
+#undef STUDY_INTEGER
+    ") WITHOUT ROWID",
+    /* `job` may name one that is gone: the row keeps what it showed. */
+    "CREATE TABLE IF NOT EXISTS study_rows ("
+    "study TEXT NOT NULL REFERENCES studies (id) ON DELETE CASCADE, number INTEGER NOT NULL,"
+    " state INTEGER NOT NULL, reused INTEGER NOT NULL DEFAULT 0, parameters TEXT NOT NULL,"
+    " settings TEXT NOT NULL, job TEXT, reason TEXT, detail TEXT, metrics TEXT,"
+    " PRIMARY KEY (study, number)) WITHOUT ROWID",
+    "CREATE INDEX IF NOT EXISTS study_rows_by_state ON study_rows (study, state, number)",
+    /* Of a study (number -1) and of its rows; `row` goes on counting those of `transitions`. */
+    "CREATE TABLE IF NOT EXISTS study_transitions (row INTEGER PRIMARY KEY,"
+    " study TEXT NOT NULL REFERENCES studies (id) ON DELETE CASCADE, number INTEGER NOT NULL,"
+    " at TEXT NOT NULL, state TEXT NOT NULL, job TEXT, detail TEXT)",
+    "CREATE INDEX IF NOT EXISTS study_transitions_by_study ON study_transitions (study, row)",
 };
 
 /* What format 1 had otherwise. */

@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 #include "worker/check_answer.h"
 
+#include "talus/version.h"
+
 json_t *check_answer_error(const char *pointer, const char *code, const char *detail)
 {
     return json_pack("{s:b, s:[{s:s, s:s, s:s}]}", "ok", 0, "errors", "pointer", pointer, "code",
@@ -17,9 +19,9 @@ static json_t *answer_for(const struct talus_scene *scene, json_t *effective,
     if (forecast == NULL)
         return check_answer_error(error.pointer, error.code, error.text);
     scene_hash(effective, hash);
-    return json_pack("{s:b, s:O, s:o, s:o, s:o, s:s}", "ok", 1, "effective", effective, "forecast",
-                     forecast, "advice", scene_advice(scene), "warnings",
-                     scene_issues_json(warnings), "hash", hash);
+    return json_pack("{s:b, s:O, s:o, s:o, s:o, s:s, s:s}", "ok", 1, "effective", effective,
+                     "forecast", forecast, "advice", scene_advice(scene), "warnings",
+                     scene_issues_json(warnings), "hash", hash, "build", talus_build());
 }
 
 static json_t *finish(enum talus_status status, struct talus_scene *scene, json_t *effective,

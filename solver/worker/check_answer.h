@@ -7,8 +7,9 @@
 
 #include "scene/scene_json.h"
 
-/* {"ok":true,"effective","forecast","advice","warnings","hash"} or {"ok":false,"errors":[...]};
- * new reference, NULL without memory. `threads`: with which the run is forecast. */
+/* {"ok":true,"effective","forecast","advice","warnings","hash","build"} or
+ * {"ok":false,"errors":[...]}; new reference, NULL without memory. `threads`: with which the run is
+ * forecast. */
 json_t *check_answer(const json_t *scene, int threads);
 
 /* The same for a file; a text that is not JSON is one error with line and column. */

@@ -36,7 +36,7 @@ def check(question):
                 "time_step": 0.0004, "memory_bytes": 100000, "bytes_per_particle": 200,
                 "disk_bytes": 100000, "wall_seconds": {"low": 0.1, "expected": 0.2, "high": 0.4}}
     return {"ok": True, "effective": effective, "forecast": forecast, "advice": [], "warnings": [],
-            "hash": hashlib.sha256(hashed.encode()).hexdigest()}
+            "hash": hashlib.sha256(hashed.encode()).hexdigest(), "build": "fake"}
 
 
 def check_many(question):
@@ -44,7 +44,7 @@ def check_many(question):
     answers = []
     for scene in question["scenes"]:
         answer = check({"scene": scene})
-        answers.append({key: answer[key] for key in ("ok", "errors", "forecast", "hash")
+        answers.append({key: answer[key] for key in ("ok", "errors", "forecast", "hash", "build")
                         if key in answer})
     return {"ok": True, "answers": answers}
 
