@@ -2,17 +2,18 @@
 # SPDX-License-Identifier: Apache-2.0
 """The problems of the charts that are scenes, as study files for the service.
 
-    studies.py FOLDER           writes work-precision-PROBLEM.json for each
-    studies.py FOLDER --check   fails where a file is not what would be written
+    work_precision_studies.py FOLDER           writes work-precision-PROBLEM.json for each
+    work_precision_studies.py FOLDER --check   fails where a file is not what would be written
 
 A study asks for its error from a reference in the scene, so each problem's error is put as one:
 README.md of the folder of studies says what it is, and by what factor it differs from the chart's.
 """
-import json
 import math
 import pathlib
 import sys
 
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "studies"))
+import study_file
 from methods import METHODS
 from problems import Cantilever, Column, DamBreak
 
@@ -83,16 +84,8 @@ def study(name, problem, refer):
 
 def main():
     folder, check = pathlib.Path(sys.argv[1]), "--check" in sys.argv[2:]
-    stale = []
-    for name, (problem, refer) in PROBLEMS.items():
-        path = folder / f"work-precision-{name}.json"
-        text = json.dumps(study(name, problem, refer), indent=2) + "\n"
-        if not check:
-            path.write_text(text)
-        elif not path.exists() or path.read_text() != text:
-            stale.append(path.name)
-    if stale:
-        sys.exit(f"not what studies.py writes: {', '.join(stale)}")
+    study_file.write_or_check(folder, {f"work-precision-{name}.json": study(name, problem, refer)
+                                       for name, (problem, refer) in PROBLEMS.items()}, check)
 
 
 if __name__ == "__main__":
