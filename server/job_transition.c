@@ -98,6 +98,9 @@ static enum talus_status attempt_close(struct job *job, const struct job_outcome
         status = job_json_set(&job->metrics, outcome->metrics, error);
     if (status == TALUS_OK && outcome->receipt != NULL)
         status = job_json_set(&job->receipt, outcome->receipt, error);
+    if (status == TALUS_OK && outcome->end == JOB_END_SUCCEEDED)
+        status = job_text_set(&job->build,
+                              json_string_value(json_object_get(outcome->receipt, "build")), error);
     if (status == TALUS_OK && outcome->progress != NULL)
         status = job_json_set(&job->progress, outcome->progress, error);
     return status;

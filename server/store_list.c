@@ -83,20 +83,16 @@ enum talus_status store_job_find_finished(struct store *store, const char *scene
                                           const char *build, char found[64],
                                           struct talus_error *error)
 {
+    static const char sql[] = "SELECT id FROM jobs WHERE scene_hash = ? AND build = ?"
+                              " AND state = 2 AND steered = 0 AND deleting = 0 ORDER BY id LIMIT 1";
+    _Static_assert(JOB_SUCCEEDED == 2, "the number is also in an index");
     enum talus_status status = TALUS_IO;
     found[0] = '\0';
     (void)pthread_mutex_lock(&store->reader_mutex);
-    sqlite3_stmt *statement =
-        store_prepare(store->reader,
-                      "SELECT id FROM jobs WHERE scene_hash = ?1 AND state = ?2 AND deleting = 0"
-                      " AND steered = 0 AND json_extract(receipt, '$.build') = ?3"
-                      " AND NOT coalesce(json_extract(receipt, '$.steered'), 0)"
-                      " ORDER BY id DESC LIMIT 1",
-                      error);
+    sqlite3_stmt *statement = store_prepare(store->reader, sql, error);
     if (statement != NULL) {
         (void)sqlite3_bind_text(statement, 1, scene_hash, -1, SQLITE_STATIC);
-        (void)sqlite3_bind_int(statement, 2, JOB_SUCCEEDED);
-        (void)sqlite3_bind_text(statement, 3, build, -1, SQLITE_STATIC);
+        (void)sqlite3_bind_text(statement, 2, build, -1, SQLITE_STATIC);
         int step = sqlite3_step(statement);
         if (step == SQLITE_ROW)
             (void)snprintf(found, 64, "%s", (const char *)sqlite3_column_text(statement, 0));

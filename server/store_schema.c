@@ -26,6 +26,9 @@ static const struct column job_columns[] = {
 /* In order: an index comes behind the columns it is over, which jobs_prepare has added. */
 static const char *const parts[] = {
     "CREATE INDEX IF NOT EXISTS jobs_by_state ON jobs (state, priority DESC, id)",
+    /* Of what may answer for another job of the same scene. */
+    "CREATE INDEX IF NOT EXISTS jobs_by_scene ON jobs (scene_hash, build, id)"
+    " WHERE state = 2 AND steered = 0 AND deleting = 0",
     "CREATE TABLE IF NOT EXISTS transitions (row INTEGER PRIMARY KEY AUTOINCREMENT,"
     " job TEXT NOT NULL REFERENCES jobs (id) ON DELETE CASCADE, number INTEGER NOT NULL,"
     " at TEXT NOT NULL, state TEXT NOT NULL, attempt INTEGER NOT NULL, reason TEXT, detail TEXT,"
@@ -34,7 +37,6 @@ static const char *const parts[] = {
     "CREATE TABLE IF NOT EXISTS request_keys (key TEXT NOT NULL, owner TEXT NOT NULL,"
     " body TEXT NOT NULL, resource TEXT NOT NULL, PRIMARY KEY (owner, key)) WITHOUT ROWID",
     "CREATE INDEX IF NOT EXISTS request_keys_by_resource ON request_keys (resource)",
-    "CREATE INDEX IF NOT EXISTS jobs_by_scene ON jobs (scene_hash, state, id)",
     "CREATE UNIQUE INDEX IF NOT EXISTS jobs_by_study ON jobs (study, study_row)"
     " WHERE study IS NOT NULL",
     "CREATE TABLE IF NOT EXISTS studies (id TEXT PRIMARY KEY"

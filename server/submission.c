@@ -148,7 +148,9 @@ void submission_read(const json_t *body, int64_t workers, struct job *job, const
     const json_t *reuse = json_object_get(body, "reuse");
     if (reuse != NULL && !json_is_boolean(reuse))
         issue_add(errors, "/reuse", "type", reuse, NULL, "true or false is wanted");
-    else if (json_is_true(reuse))
-        issue_add(errors, "/reuse", "unsupported", reuse, NULL,
-                  "reusing finished jobs is not in this build");
+}
+
+bool submission_reuse(const json_t *body)
+{
+    return json_is_true(json_object_get(body, "reuse"));
 }

@@ -145,6 +145,27 @@ static void reply_known(struct request *request, enum store_insert known, const 
     }
 }
 
+/* Answers with a finished job of the same scene and solver, if that is asked for and there is one.
+ * Nothing is made, so an Idempotency-Key is not kept. */
+static bool reply_reused(struct request *request, const struct submission *submission)
+{
+    const json_t *build = json_object_get(submission->answer, "build");
+    struct store *store = request->service->store;
+    struct talus_error error = {0};
+    struct job job = {0};
+    char id[64];
+    if (!submission_reuse(submission->body) || !json_is_string(build) ||
+        store_job_find_finished(store, submission->job.scene_hash, json_string_value(build), id,
+                                &error) != TALUS_OK ||
+        id[0] == '\0' || store_job_read(store, id, &job, &error) != TALUS_OK)
+        return false;
+    bool good = job_text_set(&job.reused_from, id, &error) == TALUS_OK;
+    if (good)
+        reply_job(request, MHD_HTTP_OK, &job, false);
+    job_release(&job);
+    return good;
+}
+
 /* What the forecast says the results take. */
 static double disk_bytes(const struct submission *submission)
 {
@@ -171,7 +192,8 @@ static void submit(struct request *request, struct submission *submission)
         reply_known(request, known, existing);
         return;
     }
-    if (!submission_check(request, submission) || !admission_disk(request, disk_bytes(submission)))
+    if (!submission_check(request, submission) || reply_reused(request, submission) ||
+        !admission_disk(request, disk_bytes(submission)))
         return;
     const json_t *effective = json_object_get(submission->answer, "effective");
     if (job_text_set(&submission->job.owner, request->principal.name, &error) != TALUS_OK ||

@@ -99,7 +99,7 @@ class Conversation(unittest.TestCase):
         answer = self.helper.ask(op="check", scene=scene_samples.BALL, threads=2)
         self.assertTrue(answer["ok"])
         self.assertEqual(set(answer),
-                         {"ok", "effective", "forecast", "advice", "warnings", "hash"})
+                         {"ok", "effective", "forecast", "advice", "warnings", "hash", "build"})
         self.assertEqual(answer["effective"]["solver"]["courant"], 0.4)
         again = self.helper.ask(op="check", scene=answer["effective"])
         self.assertEqual(again["effective"], answer["effective"])

@@ -83,7 +83,6 @@ static void test_single_mistakes(void **state)
     expect("{\"scene\":{},\"limits\":{\"wall\":5}}", "/limits/wall", "unknown_key");
     expect("{\"scene\":{},\"limits\":{\"wall_seconds\":0}}", "/limits/wall_seconds", "range");
     expect("{\"scene\":{},\"limits\":{\"memory_bytes\":5}}", "/limits/memory_bytes", "range");
-    expect("{\"scene\":{},\"reuse\":true}", "/reuse", "unsupported");
     expect("{\"scene\":{},\"reuse\":1}", "/reuse", "type");
 }
 
