@@ -17,6 +17,13 @@ bool admission_draining(struct request *request)
     return true;
 }
 
+const struct json_field admission_key_headers[] = {
+    {.key = "Idempotency-Key",
+     .optional = true,
+     .most = KEY_BYTES_MAX,
+     .meaning = "the same key and an equal body make one thing, however often they are sent"},
+    OPERATION_END};
+
 bool admission_key(struct request *request, const json_t *body, struct store_key *key,
                    char checksum[CHECKSUM_SIZE])
 {

@@ -11,6 +11,7 @@
 
 /* Whether the daemon is stopping and takes no work. True: the reply is made. */
 bool admission_draining(struct request *request);
+extern const struct json_field admission_key_headers[]; /* of its operation */
 /* Reads the Idempotency-Key; key->key stays NULL without one. `checksum` is storage for key->body.
  * False: the reply is made. */
 bool admission_key(struct request *request, const json_t *body, struct store_key *key,

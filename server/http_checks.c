@@ -201,6 +201,6 @@ void http_check(struct request *request)
         return;
     }
     request_route(request);
-    if (request->reply.response == NULL)
+    if (request->reply.response == NULL && request_query_check(request))
         body_check(request, &fields);
 }

@@ -15,6 +15,13 @@ static const struct {
 #undef JOB_STATE
 };
 
+const char *const job_state_words[] = {
+#define JOB_STATE(ENUM, name, final) #name,
+#include "job_states.def"
+#undef JOB_STATE
+    NULL,
+};
+
 const char *job_state_name(enum job_state state)
 {
     return states[state].name;

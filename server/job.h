@@ -46,6 +46,7 @@ struct job_outcome {
     json_t *metrics, *receipt, *progress;
 };
 
+extern const char *const job_state_words[]; /* in the order of the enum, then NULL */
 const char *job_state_name(enum job_state state);
 /* JOB_STATE_COUNT if there is none of that name. */
 enum job_state job_state_find(const char *name);

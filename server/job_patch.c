@@ -2,9 +2,9 @@
 #include "job_patch.h"
 
 #include "reply.h"
+#include "schemas.h"
 #include "submission.h"
 
-#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -62,41 +62,65 @@ bool job_patch_empty(const json_t *body)
            json_object_get(body, "labels") == NULL && json_object_get(body, "limits") == NULL;
 }
 
-static void orders_check(const json_t *body, double time, json_t *errors)
-{
-    const json_t *end_time = json_object_get(body, "end_time");
-    if (end_time != NULL && !json_is_number(end_time)) {
-        issue_add(errors, "/end_time", "type", end_time, NULL, "a number is wanted");
-    } else if (end_time != NULL && !(json_number_value(end_time) > fmax(time, 0))) {
-        json_t *allowed = json_pack("{s:f}", "exclusiveMinimum", fmax(time, 0));
-        issue_add(errors, "/end_time", "range", end_time, allowed,
-                  "the run has reached %.6g s and cannot end before that", time);
-        json_decref(allowed);
-    }
-    for (size_t index = 0; index < LOOK_COUNT; index++) {
-        char pointer[32] = "/";
-        const json_t *value = json_object_get(body, looks[index]);
-        (void)strcat(pointer, looks[index]);
-        if (value != NULL && !json_is_boolean(value))
-            issue_add(errors, pointer, "type", value, NULL, "true or false is wanted");
-    }
-}
+static const struct json_field patch_fields[] = {
+    {.key = "priority",
+     .kind = FIELD_SAME,
+     .optional = true,
+     .nullable = true,
+     .item = &submission_priority,
+     .offset = FIELD_NOWHERE},
+    {.key = "labels",
+     .kind = FIELD_SAME,
+     .optional = true,
+     .nullable = true,
+     .patch = true,
+     .item = &submission_labels},
+    {.key = "limits",
+     .kind = FIELD_SAME,
+     .optional = true,
+     .nullable = true,
+     .patch = true,
+     .item = &submission_limits},
+    {.key = "end_time",
+     .kind = FIELD_NUMBER,
+     .optional = true,
+     .above_minimum = true,
+     .offset = FIELD_NOWHERE,
+     .meaning = "[s] at which the run is to end now; it must still be to come"},
+    {.key = "checkpoint_now",
+     .kind = FIELD_BOOLEAN,
+     .optional = true,
+     .offset = FIELD_NOWHERE,
+     .meaning = "write a checkpoint"},
+    {.key = "frame_now",
+     .kind = FIELD_BOOLEAN,
+     .optional = true,
+     .offset = FIELD_NOWHERE,
+     .meaning = "write a frame"},
+    {.key = NULL},
+};
+const struct json_field schema_job_patch = {
+    .kind = FIELD_OBJECT, .schema = "JobPatch", .fields = patch_fields};
 
 void job_patch_check(const json_t *body, const struct job *job, double time, json_t *errors)
 {
-    static const char *const known[] = {"priority",       "labels",    "limits", "end_time",
-                                        "checkpoint_now", "frame_now", NULL};
     struct job patched = {0};
     if (!json_is_object(body)) {
         issue_add(errors, "", "type", NULL, NULL, "the body must be an object");
         return;
     }
-    submission_keys_check(body, "", known, errors);
-    json_t *settings = settings_merge(job, body);
+    json_fields_read(patch_fields, body, "", &patched, errors);
+    const json_t *end_time = json_object_get(body, "end_time");
+    if (json_is_number(end_time) && json_number_value(end_time) > 0 &&
+        !(json_number_value(end_time) > time))
+        issue_add(errors, "/end_time", "past", end_time, NULL,
+                  "the run has reached %.6g s and cannot end before that", time);
+    if (json_array_size(errors) > 0)
+        return;
+    json_t *settings = settings_merge(job, body); /* the whole may have too many labels */
     submission_settings_read(settings, &patched, errors);
     json_decref(settings);
     job_release(&patched);
-    orders_check(body, time, errors);
 }
 
 /* Notes the orders in the job: another end replaces the one before, looks are counted. */

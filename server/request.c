@@ -12,13 +12,13 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const struct route routes[] = {
+const struct route request_routes[] = {
 #define ROUTE(method, path, lane, role, handler)                                                   \
-    {#method, path, LANE_##lane, ROLE_##role, handle_##handler},
+    {#method, path, #handler, LANE_##lane, ROLE_##role, handle_##handler, &operation_##handler},
 #include "routes.def"
 #undef ROUTE
 };
-enum { ROUTE_COUNT = sizeof routes / sizeof routes[0] };
+const size_t request_route_count = sizeof request_routes / sizeof request_routes[0];
 
 /* Joins segments from `index` on with slashes; false if they do not fit. */
 static bool segments_join(const struct target *target, size_t index, char *rest, size_t size)
@@ -43,15 +43,20 @@ static bool route_matches(const struct route *route, struct request *request)
     bool captured = false;
     for (size_t index = 0;; index++) {
         size_t length = strcspn(pattern, "/");
+        const char *suffix = pattern + 1; /* "*.png": a segment that ends so */
         if (length == 2 && pattern[0] == '*')
             return index < target->segment_count &&
                    segments_join(target, index, request->rest, sizeof request->rest);
         if (index >= target->segment_count)
             return false;
         const char *segment = target->segments[index];
-        if (length == 1 && pattern[0] == '*') {
+        if (pattern[0] == '*') {
+            const size_t tail = length - 1, whole = strlen(segment);
+            if (whole < tail || strncmp(segment + whole - tail, suffix, tail) != 0)
+                return false;
             if (captured)
-                (void)snprintf(request->rest, sizeof request->rest, "%s", segment);
+                (void)snprintf(request->rest, sizeof request->rest, "%.*s", (int)(whole - tail),
+                               segment);
             else
                 request->segment = segment;
             captured = true;
@@ -64,12 +69,15 @@ static bool route_matches(const struct route *route, struct request *request)
     }
 }
 
+const struct json_field operation_job_path[] = {{.key = "id", .meaning = "of the job"},
+                                                OPERATION_END};
+
 void request_route(struct request *request)
 {
     char allow[64] = "";
     const char *method = strcmp(request->method, "HEAD") == 0 ? "GET" : request->method;
-    for (size_t index = 0; index < ROUTE_COUNT; index++) {
-        const struct route *route = &routes[index];
+    for (size_t index = 0; index < request_route_count; index++) {
+        const struct route *route = &request_routes[index];
         if (!route_matches(route, request))
             continue;
         if (strcmp(route->method, method) == 0) {
@@ -93,56 +101,6 @@ void request_route(struct request *request)
 const char *request_header(const struct request *request, const char *name)
 {
     return MHD_lookup_connection_value(request->connection, MHD_HEADER_KIND, name);
-}
-
-static void query_problem(struct request *request, const char *name, const char *code,
-                          const char *value, const char *detail)
-{
-    json_t *errors = json_pack("[{s:s, s:s, s:s, s:s, s:s}]", "pointer", "", "parameter", name,
-                               "code", code, "detail", detail, "given", value);
-    reply_problem(&request->reply, MHD_HTTP_UNPROCESSABLE_CONTENT, "query", request->raw, errors,
-                  "query parameter %s: %s", name, detail);
-}
-
-bool request_query_check(struct request *request, const char *const *allowed)
-{
-    for (size_t index = 0; index < request->target.query_count; index++) {
-        const struct target_parameter *parameter = &request->target.query[index];
-        bool known = false, repeated = false;
-        for (size_t other = 0; allowed[other] != NULL; other++)
-            known = known || strcmp(allowed[other], parameter->name) == 0;
-        for (size_t other = 0; other < index; other++)
-            repeated = repeated || strcmp(request->target.query[other].name, parameter->name) == 0;
-        char detail[256];
-        const char *near = suggest(parameter->name, allowed);
-        if (known && !repeated)
-            continue;
-        (void)snprintf(detail, sizeof detail, "%s%s%s%s",
-                       repeated ? "is given twice" : "is not known here",
-                       near == NULL || repeated ? "" : "; did you mean ",
-                       near == NULL || repeated ? "" : near, near == NULL || repeated ? "" : "?");
-        query_problem(request, parameter->name, repeated ? "repeated" : "unknown_key",
-                      parameter->value, detail);
-        return false;
-    }
-    return true;
-}
-
-bool request_query_number(struct request *request, const char *name, double low, double high,
-                          double missing, double *number)
-{
-    const char *value = target_query(&request->target, name);
-    *number = missing;
-    if (value == NULL)
-        return true;
-    char *end = NULL;
-    *number = strtod(value, &end);
-    if (end != value && *end == '\0' && *number >= low && *number <= high)
-        return true;
-    char detail[128];
-    (void)snprintf(detail, sizeof detail, "a number from %g to %g is wanted", low, high);
-    query_problem(request, name, "range", value, detail);
-    return false;
 }
 
 bool request_job(struct request *request, struct job *job)

@@ -4,6 +4,7 @@
 #define TALUS_REQUEST_H
 
 #include "job.h"
+#include "operation.h"
 #include "reply.h"
 #include "request_principal.h"
 #include "target.h"
@@ -28,9 +29,11 @@ struct request;
 
 struct route {
     const char *method, *path;
+    const char *name; /* of the handler */
     enum lane lane;
     enum role role; /* the least that a caller needs */
     enum handled (*handle)(struct request *request);
+    const struct operation *operation;
 };
 
 /* Owned by the HTTP library's connection; while it is suspended, by the lane or wait that has it.
@@ -59,18 +62,22 @@ struct request {
 };
 
 #define ROUTE(method, path, lane, role, handler)                                                   \
-    enum handled handle_##handler(struct request *request);
+    enum handled handle_##handler(struct request *request);                                        \
+    extern const struct operation operation_##handler;
 #include "routes.def"
 #undef ROUTE
+
+extern const struct route request_routes[];
+extern const size_t request_route_count;
 
 /* Finds the route and fills segment and rest, or makes the reply (404, 405 with Allow). */
 void request_route(struct request *request);
 const char *request_header(const struct request *request, const char *name);
-/* Refuses query parameters other than `allowed` (NULL-terminated). False: the reply is made. */
-bool request_query_check(struct request *request, const char *const *allowed);
-/* A number in the query within [low, high], `missing` without it. False: the reply is made. */
-bool request_query_number(struct request *request, const char *name, double low, double high,
-                          double missing, double *number);
+/* Refuses query parameters that the operation of the route does not list, or whose values it does
+ * not allow. Every request goes through it before its handler. False: the reply is made. */
+bool request_query_check(struct request *request);
+/* A number in the query, or its preset without one. */
+double request_query_number(const struct request *request, const char *name);
 /* Reads the job that the path names. False: the reply is made. */
 bool request_job(struct request *request, struct job *job);
 /* Its folder, of which the caller is the owner, or NULL with the reply made; the job exists. */

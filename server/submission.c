@@ -1,153 +1,129 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 #include "submission.h"
 
-#include "json_pointer.h"
 #include "reply.h"
-#include "suggest.h"
+#include "schemas.h"
 
-#include <math.h>
-#include <stdio.h>
+#include <stddef.h>
 #include <string.h>
 
-enum { NAME_BYTES = 256, LABELS_MAX = 64, DEFAULT_RETRIES = 2 };
+enum { NAME_CHARACTERS = 256, LABELS_MAX = 64, DEFAULT_RETRIES = 2, THREADS_MAX = 4096 };
 
-static void range_issue(json_t *errors, const char *pointer, const json_t *given, double low,
-                        double high)
+#define AT(member) offsetof(struct job, member)
+
+/* `label=key:value` must stay unambiguous. */
+static bool label_key_holds(const char *key)
 {
-    json_t *allowed = json_pack("{s:f, s:f}", "minimum", low, "maximum", high);
-    issue_add(errors, pointer, json_is_number(given) ? "range" : "type", given, allowed,
-              "a number from %.15g to %.15g is wanted", low, high);
-    json_decref(allowed);
+    return strchr(key, ':') == NULL && strlen(key) <= NAME_CHARACTERS;
 }
 
-static int64_t integer_read(const json_t *object, const char *key, const char *pointer, int64_t low,
-                            int64_t high, int64_t missing, json_t *errors)
-{
-    const json_t *value = json_object_get(object, key);
-    double number = json_number_value(value);
-    if (value == NULL)
-        return missing;
-    if (!json_is_number(value) || number < (double)low || number > (double)high) {
-        range_issue(errors, pointer, value, (double)low, (double)high);
-        return missing;
-    }
-    if (floor(number) < number) {
-        issue_add(errors, pointer, "type", value, NULL, "a whole number is wanted");
-        return missing;
-    }
-    return (int64_t)number;
-}
+static const struct json_field label = {.kind = FIELD_TEXT, .most = NAME_CHARACTERS};
 
-void submission_keys_check(const json_t *object, const char *parent, const char *const *known,
-                           json_t *errors)
-{
-    const char *key;
-    json_t *value;
-    json_object_foreach((json_t *)object, key, value)
-    {
-        char pointer[JSON_POINTER_SIZE];
-        bool found = false;
-        for (size_t index = 0; known[index] != NULL; index++)
-            found = found || strcmp(known[index], key) == 0;
-        if (found)
-            continue;
-        const char *near = suggest(key, known);
-        json_pointer_join(pointer, parent, key);
-        issue_add(errors, pointer, "unknown_key", NULL, NULL, "unknown key%s%s%s",
-                  near == NULL ? "" : "; did you mean \"", near == NULL ? "" : near,
-                  near == NULL ? "" : "\"?");
-    }
-}
+static const struct json_field limit_fields[] = {
+    {.key = "wall_seconds",
+     .kind = FIELD_NUMBER,
+     .optional = true,
+     .minimum = 1e-3,
+     .maximum = 1e9,
+     .offset = AT(wall_limit),
+     .meaning = "over all attempts"},
+    {.key = "memory_bytes",
+     .kind = FIELD_INTEGER,
+     .optional = true,
+     .minimum = 1 << 20,
+     .maximum = (double)(INT64_C(1) << 50),
+     .offset = AT(memory_limit),
+     .meaning = "of the worker"},
+    {.key = "disk_bytes",
+     .kind = FIELD_INTEGER,
+     .optional = true,
+     .minimum = 1 << 16,
+     .maximum = (double)(INT64_C(1) << 50),
+     .offset = AT(disk_limit),
+     .meaning = "of the results"},
+    {.key = NULL},
+};
 
-static void name_read(const json_t *body, struct job *job, json_t *errors)
-{
-    const json_t *name = json_object_get(body, "name");
-    struct talus_error error = {0};
-    if (name == NULL)
-        return;
-    if (!json_is_string(name) || json_string_length(name) > NAME_BYTES)
-        issue_add(errors, "/name", "type", name, NULL, "a string of at most %d bytes is wanted",
-                  NAME_BYTES);
-    else if (job_text_set(&job->name, json_string_value(name), &error) != TALUS_OK)
-        issue_add(errors, "/name", "memory", NULL, NULL, "out of memory");
-}
+const struct json_field submission_labels = {.kind = FIELD_MAP,
+                                             .most = LABELS_MAX,
+                                             .item = &label,
+                                             .key_pattern = "^[^:]{0,256}$",
+                                             .key_holds = label_key_holds,
+                                             .meaning = "for filters; no colon in a key"};
+const struct json_field submission_limits = {
+    .kind = FIELD_OBJECT, .fields = limit_fields, .meaning = "beyond which the job fails"};
+const struct json_field submission_priority = {
+    .kind = FIELD_INTEGER, .minimum = -100, .maximum = 100, .meaning = "larger ones start first"};
 
-static void labels_read(const json_t *body, struct job *job, json_t *errors)
-{
-    json_t *labels = json_object_get(body, "labels");
-    struct talus_error error = {0};
-    const char *key;
-    json_t *value;
-    if (labels == NULL)
-        return;
-    if (!json_is_object(labels) || json_object_size(labels) > LABELS_MAX) {
-        issue_add(errors, "/labels", "type", labels, NULL,
-                  "an object of at most %d strings is wanted", LABELS_MAX);
-        return;
+#define SETTINGS                                                                                   \
+    {.key = "labels",                                                                              \
+     .kind = FIELD_SAME,                                                                           \
+     .optional = true,                                                                             \
+     .item = &submission_labels,                                                                   \
+     .offset = AT(labels)},                                                                        \
+        {.key = "priority",                                                                        \
+         .kind = FIELD_SAME,                                                                       \
+         .optional = true,                                                                         \
+         .item = &submission_priority,                                                             \
+         .offset = AT(priority)},                                                                  \
+    {                                                                                              \
+        .key = "limits", .kind = FIELD_SAME, .optional = true, .item = &submission_limits          \
     }
-    json_object_foreach(labels, key, value)
-    {
-        if (json_is_string(value) && strlen(key) <= NAME_BYTES &&
-            json_string_length(value) <= NAME_BYTES && strchr(key, ':') == NULL)
-            continue;
-        char pointer[NAME_BYTES + 16];
-        (void)snprintf(pointer, sizeof pointer, "/labels/%s", key);
-        issue_add(errors, pointer, "type", value, NULL,
-                  "a label is a string of at most %d bytes under a key without a colon",
-                  NAME_BYTES);
-    }
-    if (job_json_set(&job->labels, labels, &error) != TALUS_OK)
-        issue_add(errors, "/labels", "memory", NULL, NULL, "out of memory");
-}
 
-static void limits_read(const json_t *body, struct job *job, json_t *errors)
-{
-    static const char *const known[] = {"wall_seconds", "memory_bytes", "disk_bytes", NULL};
-    const json_t *limits = json_object_get(body, "limits");
-    if (limits == NULL)
-        return;
-    if (!json_is_object(limits)) {
-        issue_add(errors, "/limits", "type", limits, NULL, "an object is wanted");
-        return;
-    }
-    submission_keys_check(limits, "/limits", known, errors);
-    const json_t *wall = json_object_get(limits, "wall_seconds");
-    job->wall_limit = json_number_value(wall);
-    if (wall != NULL && (!json_is_number(wall) || job->wall_limit < 1e-3 || job->wall_limit > 1e9))
-        range_issue(errors, "/limits/wall_seconds", wall, 1e-3, 1e9);
-    job->memory_limit = integer_read(limits, "memory_bytes", "/limits/memory_bytes", 1 << 20,
-                                     INT64_C(1) << 50, 0, errors);
-    job->disk_limit = integer_read(limits, "disk_bytes", "/limits/disk_bytes", 1 << 16,
-                                   INT64_C(1) << 50, 0, errors);
-}
+static const struct json_field settings_fields[] = {SETTINGS, {.key = NULL}};
+
+static const struct json_field submission_fields[] = {
+    {.key = "scene", .kind = FIELD_SCENE, .offset = FIELD_NOWHERE},
+    {.key = "name",
+     .kind = FIELD_TEXT,
+     .optional = true,
+     .most = NAME_CHARACTERS,
+     .offset = AT(name),
+     .meaning = "for people"},
+    SETTINGS,
+    {.key = "threads",
+     .kind = FIELD_INTEGER,
+     .optional = true,
+     .minimum = 0,
+     .maximum = THREADS_MAX,
+     .preset = 1,
+     .offset = AT(threads),
+     .meaning = "that the job takes; 0: as many as the forecast says pay"},
+    {.key = "retries",
+     .kind = FIELD_INTEGER,
+     .optional = true,
+     .minimum = 0,
+     .maximum = 100,
+     .preset = DEFAULT_RETRIES,
+     .offset = AT(retries),
+     .meaning = "after crashes"},
+    {.key = "reuse",
+     .kind = FIELD_BOOLEAN,
+     .optional = true,
+     .offset = FIELD_NOWHERE,
+     .meaning = "take the result of a finished job of the same scene and build, if there is one"},
+    {.key = NULL},
+};
+const struct json_field schema_submission = {
+    .kind = FIELD_OBJECT, .schema = "Submission", .fields = submission_fields};
 
 void submission_settings_read(const json_t *body, struct job *job, json_t *errors)
 {
-    labels_read(body, job, errors);
-    limits_read(body, job, errors);
-    job->priority = integer_read(body, "priority", "/priority", -100, 100, 0, errors);
+    json_fields_read(settings_fields, body, "", job, errors);
 }
 
 void submission_read(const json_t *body, int64_t workers, struct job *job, const json_t **scene,
                      json_t *errors)
 {
-    static const char *const known[] = {"scene",  "name",    "labels", "priority", "threads",
-                                        "limits", "retries", "reuse",  NULL};
     *scene = json_object_get(body, "scene");
     if (!json_is_object(body)) {
         issue_add(errors, "", "type", NULL, NULL, "the body must be an object");
         return;
     }
-    submission_keys_check(body, "", known, errors);
-    if (*scene == NULL)
-        issue_add(errors, "/scene", "required", NULL, NULL, "the scene is missing");
-    name_read(body, job, errors);
-    submission_settings_read(body, job, errors);
-    job->threads = integer_read(body, "threads", "/threads", 0, workers, 1, errors);
-    job->retries = integer_read(body, "retries", "/retries", 0, 100, DEFAULT_RETRIES, errors);
-    const json_t *reuse = json_object_get(body, "reuse");
-    if (reuse != NULL && !json_is_boolean(reuse))
-        issue_add(errors, "/reuse", "type", reuse, NULL, "true or false is wanted");
+    json_fields_read(submission_fields, body, "", job, errors);
+    if (job->threads > workers)
+        issue_add(errors, "/threads", "capacity", json_object_get(body, "threads"), NULL,
+                  "this service runs %lld threads at once", (long long)workers);
 }
 
 bool submission_reuse(const json_t *body)

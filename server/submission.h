@@ -4,6 +4,7 @@
 #define TALUS_SUBMISSION_H
 
 #include "job.h"
+#include "json_field.h"
 
 #include <jansson.h>
 
@@ -13,12 +14,11 @@ void submission_read(const json_t *body, int64_t workers, struct job *job, const
                      json_t *errors);
 /* The part of it that may change later, labels, limits and priority, into a job whose own are
  * replaced. */
-void submission_settings_read(const json_t *body, struct job *job, json_t *errors);
+void submission_settings_read(const json_t *settings, struct job *job, json_t *errors);
 /* Whether a body asks for `reuse`. */
 bool submission_reuse(const json_t *body);
-/* Adds an issue for every key of an object that is not in a NULL-terminated list, with the nearest
- * one that is; `parent` is the object's JSON Pointer. */
-void submission_keys_check(const json_t *object, const char *parent, const char *const *known,
-                           json_t *errors);
+
+/* For the tables of other bodies. */
+extern const struct json_field submission_labels, submission_limits, submission_priority;
 
 #endif

@@ -6,14 +6,34 @@
 
 #include <stdlib.h>
 
+const struct operation operation_job_events = {
+    .summary = "What happens to a job, from its start, as Server-Sent Events",
+    .path = operation_job_path,
+    .query = (const struct json_field[]){{.key = "after",
+                                          .kind = FIELD_TEXT,
+                                          .optional = true,
+                                          .meaning = "id of the event behind which to go on"},
+                                         OPERATION_END},
+    .headers = (const struct json_field[]){{.key = "Last-Event-ID",
+                                            .kind = FIELD_TEXT,
+                                            .optional = true,
+                                            .meaning = "the same, as browsers send it"},
+                                           OPERATION_END},
+    .responses =
+        (const struct response[]){
+            {.status = 200,
+             .type = "text/event-stream",
+             .meaning = "events state, progress, reaction, probe, energy, frame, warning, log, "
+                        "rewind, gap, done; the last ends the stream"},
+            {.status = 204, .meaning = "nothing is left to tell, now or ever"},
+            RESPONSE_END},
+};
+
 enum handled handle_job_events(struct request *request)
 {
-    static const char *const allowed[] = {"after", NULL};
     struct talus_error error = {0};
     struct event_stream stream;
     struct event_id after = {0};
-    if (!request_query_check(request, allowed))
-        return HANDLED;
     const char *id = request_header(request, "Last-Event-ID");
     if (id == NULL)
         id = target_query(&request->target, "after");

@@ -5,6 +5,7 @@
 #include "file_checksums.h"
 #include "folder.h"
 #include "request.h"
+#include "schemas.h"
 #include "service.h"
 
 #include <inttypes.h>
@@ -57,11 +58,18 @@ static bool file_list_add(const char *name, void *context)
     return true;
 }
 
+const struct operation operation_file_list = {
+    .summary = "The files of a job, with sizes and SHA-256",
+    .path = operation_job_path,
+    .responses = (const struct response[]){{.status = 200,
+                                            .type = "application/json",
+                                            .schema = &schema_file_list,
+                                            .meaning = "all files"},
+                                           RESPONSE_END},
+};
+
 enum handled handle_file_list(struct request *request)
 {
-    static const char *const allowed[] = {NULL};
-    if (!request_query_check(request, allowed))
-        return HANDLED;
     char *folder = request_folder(request);
     if (folder == NULL)
         return HANDLED;
@@ -121,12 +129,38 @@ static void file_reply(struct request *request, int descriptor, const struct sta
         (void)close(descriptor);
 }
 
+static const char *const file_headers[] = {"ETag", "Accept-Ranges", NULL};
+static const char *const part_headers[] = {"ETag", "Accept-Ranges", "Content-Range", NULL};
+
+const struct operation operation_file = {
+    .summary = "A file of a job, or a part of it",
+    .path = (const struct json_field[]){{.key = "id", .meaning = "of the job"},
+                                        {.key = "name",
+                                         .meaning = "of the file, in which slashes stay as they "
+                                                    "are: frames/frame_000000.hdf"},
+                                        OPERATION_END},
+    .headers =
+        (const struct json_field[]){
+            {.key = "Range", .optional = true, .meaning = "bytes=FIRST-LAST: this part only"},
+            {.key = "If-Range", .optional = true, .meaning = "the part only of this ETag"},
+            {.key = "If-Match", .optional = true, .meaning = "only the file with this ETag"},
+            {.key = "If-None-Match", .optional = true, .meaning = "only another than this ETag"},
+            OPERATION_END},
+    .responses =
+        (const struct response[]){
+            {.status = 200, .type = "*/*", .headers = file_headers, .meaning = "the whole file"},
+            {.status = 206,
+             .type = "*/*",
+             .headers = part_headers,
+             .meaning = "the part that was asked for"},
+            {.status = 304, .headers = file_headers, .meaning = "it is the one with this ETag"},
+            RESPONSE_END},
+    .problems = (const unsigned int[]){412, 416, 0},
+};
+
 enum handled handle_file(struct request *request)
 {
-    static const char *const allowed[] = {NULL};
     struct stat information;
-    if (!request_query_check(request, allowed))
-        return HANDLED;
     char *folder = request_folder(request);
     if (folder == NULL)
         return HANDLED;
@@ -161,14 +195,27 @@ static void log_tail(int descriptor, size_t lines, struct text *text)
     free(buffer);
 }
 
+const struct operation operation_job_log = {
+    .summary = "The end of the worker's log",
+    .path = operation_job_path,
+    .query = (const struct json_field[]){{.key = "tail",
+                                          .kind = FIELD_INTEGER,
+                                          .optional = true,
+                                          .minimum = 1,
+                                          .maximum = LOG_LINES_MAX,
+                                          .preset = LOG_LINES_DEFAULT,
+                                          .meaning = "so many lines"},
+                                         OPERATION_END},
+    .responses = (const struct response[]){{.status = 200,
+                                            .type = "text/plain; charset=utf-8",
+                                            .meaning = "the last lines, a mebibyte at most"},
+                                           RESPONSE_END},
+};
+
 enum handled handle_job_log(struct request *request)
 {
-    static const char *const allowed[] = {"tail", NULL};
-    double lines;
+    double lines = request_query_number(request, "tail");
     struct text text = {0};
-    if (!request_query_check(request, allowed) ||
-        !request_query_number(request, "tail", 1, LOG_LINES_MAX, LOG_LINES_DEFAULT, &lines))
-        return HANDLED;
     char *folder = request_folder(request);
     if (folder == NULL)
         return HANDLED;

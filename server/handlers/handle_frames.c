@@ -5,6 +5,7 @@
 #include "frame_index.h"
 #include "helper.h"
 #include "request.h"
+#include "schemas.h"
 #include "service.h"
 
 #include <errno.h>
@@ -31,11 +32,18 @@ static void frames_unreadable(struct request *request)
     reply_error(&request->reply, request->raw, &error);
 }
 
+const struct operation operation_frame_list = {
+    .summary = "The frames of a job so far",
+    .path = operation_job_path,
+    .responses = (const struct response[]){{.status = 200,
+                                            .type = "application/json",
+                                            .schema = &schema_frame_list,
+                                            .meaning = "all frames, in the order of time"},
+                                           RESPONSE_END},
+};
+
 enum handled handle_frame_list(struct request *request)
 {
-    static const char *const allowed[] = {NULL};
-    if (!request_query_check(request, allowed))
-        return HANDLED;
     char *folder = request_folder(request);
     if (folder == NULL)
         return HANDLED;
@@ -48,7 +56,7 @@ enum handled handle_frame_list(struct request *request)
     return HANDLED;
 }
 
-/* "12.png" -> 12; -1 for anything else. */
+/* "12" -> 12; -1 for anything else. */
 static json_int_t frame_number(const char *name)
 {
     char *end = NULL;
@@ -56,7 +64,7 @@ static json_int_t frame_number(const char *name)
         return -1;
     errno = 0;
     long long number = strtoll(name, &end, 10);
-    return errno == 0 && strcmp(end, ".png") == 0 ? number : -1;
+    return errno == 0 && *end == '\0' ? number : -1;
 }
 
 static const json_t *frame_find(const json_t *frames, json_int_t number)
@@ -74,12 +82,9 @@ static const json_t *frame_find(const json_t *frames, json_int_t number)
 /* Fills in what the query leaves open. False: the reply is made. */
 static bool picture_describe(struct request *request, const json_t *frame, struct picture *picture)
 {
-    double width;
     const json_t *fields = json_object_get(frame, "fields");
     const json_t *sha256 = json_object_get(frame, "sha256");
-    if (!request_query_number(request, "width", WIDTH_MIN, WIDTH_MAX, WIDTH_DEFAULT, &width))
-        return false;
-    picture->width = (int)width;
+    picture->width = (int)request_query_number(request, "width");
     picture->field = target_query(&request->target, "field");
     if (picture->field == NULL)
         picture->field = json_string_value(json_array_get(fields, 0));
@@ -90,10 +95,9 @@ static bool picture_describe(struct request *request, const json_t *frame, struc
         picture->style = "points";
     if (strspn(picture->field, "abcdefghijklmnopqrstuvwxyz0123456789_.") !=
             strlen(picture->field) ||
-        strlen(picture->field) > 64 ||
-        (strcmp(picture->style, "points") != 0 && strcmp(picture->style, "voxels") != 0)) {
+        strlen(picture->field) > 64) {
         reply_problem(&request->reply, MHD_HTTP_UNPROCESSABLE_CONTENT, "query", request->raw, NULL,
-                      "a field of the frame and the style points or voxels are wanted");
+                      "a field of the frame is wanted");
         return false;
     }
     const char *hash = json_string_value(sha256);
@@ -166,12 +170,39 @@ static void picture_reply(struct request *request, const char *folder,
     reply_header(&request->reply, MHD_HTTP_HEADER_CACHE_CONTROL, "no-cache");
 }
 
+const struct operation operation_frame_picture = {
+    .summary = "A picture of a frame, with colour bar, axes and title",
+    .path =
+        (const struct json_field[]){
+            {.key = "id", .meaning = "of the job"},
+            {.key = "n", .kind = FIELD_INTEGER, .meaning = "number of the frame"},
+            OPERATION_END},
+    .query = (const struct json_field[]){{.key = "field",
+                                          .kind = FIELD_TEXT,
+                                          .optional = true,
+                                          .meaning = "what the colours show: velocity, stress.xx, "
+                                                     "...; default: the first of the frame"},
+                                         {.key = "width",
+                                          .kind = FIELD_INTEGER,
+                                          .optional = true,
+                                          .minimum = WIDTH_MIN,
+                                          .maximum = WIDTH_MAX,
+                                          .preset = WIDTH_DEFAULT,
+                                          .meaning = "pixels"},
+                                         {.key = "style",
+                                          .kind = FIELD_TEXT,
+                                          .optional = true,
+                                          .words = (const char *const[]){"points", "voxels", NULL},
+                                          .meaning = "how particles are drawn; default points"},
+                                         OPERATION_END},
+    .responses =
+        (const struct response[]){{.status = 200, .type = "image/png", .meaning = "the picture"},
+                                  RESPONSE_END},
+};
+
 enum handled handle_frame_picture(struct request *request)
 {
-    static const char *const allowed[] = {"field", "width", "style", NULL};
     struct picture picture = {.frame = frame_number(request->rest)};
-    if (!request_query_check(request, allowed))
-        return HANDLED;
     char *folder = request_folder(request);
     if (folder == NULL)
         return HANDLED;

@@ -8,6 +8,7 @@
 #include "jobs.h"
 #include "moment.h"
 #include "request.h"
+#include "schemas.h"
 #include "service.h"
 #include "supervisor.h"
 #include "waits.h"
@@ -16,6 +17,15 @@
 #include <string.h>
 
 enum { WAIT_SECONDS_MAX = 60 };
+
+static const char *const job_headers[] = {"ETag", NULL};
+
+/* Of calls that change a job. */
+static const struct json_field match_headers[] = {
+    {.key = "If-Match",
+     .optional = true,
+     .meaning = "only while the job has this ETag, its revision"},
+    OPERATION_END};
 
 /* Whether the answer is due now; else the request is to wait. */
 static bool answer_due(const struct request *request, const struct job *job, double wait,
@@ -30,14 +40,37 @@ static bool answer_due(const struct request *request, const struct job *job, dou
     return !etag_listed(known, etag, true);
 }
 
+const struct operation operation_job = {
+    .summary = "A job as it is",
+    .path = operation_job_path,
+    .query = (const struct json_field[]){{.key = "wait",
+                                          .kind = FIELD_NUMBER,
+                                          .optional = true,
+                                          .minimum = 0,
+                                          .maximum = WAIT_SECONDS_MAX,
+                                          .meaning = "seconds to wait at most: with If-None-Match "
+                                                     "until the revision differs, without it "
+                                                     "until the job is final"},
+                                         OPERATION_END},
+    .headers =
+        (const struct json_field[]){
+            {.key = "If-None-Match", .optional = true, .meaning = "ETag that is known already"},
+            OPERATION_END},
+    .responses =
+        (const struct response[]){
+            {.status = 200,
+             .type = "application/json",
+             .schema = &schema_job,
+             .headers = job_headers,
+             .meaning = "the job; its ETag changes with everything but progress"},
+            {.status = 304, .headers = job_headers, .meaning = "it has the ETag that is known"},
+            RESPONSE_END},
+};
+
 enum handled handle_job(struct request *request)
 {
-    static const char *const allowed[] = {"wait", NULL};
     struct service *service = request->service;
-    double wait;
-    if (!request_query_check(request, allowed) ||
-        !request_query_number(request, "wait", 0, WAIT_SECONDS_MAX, 0, &wait))
-        return HANDLED;
+    const double wait = request_query_number(request, "wait");
     const char *known = request_header(request, MHD_HTTP_HEADER_IF_NONE_MATCH);
     if (wait > 0 && request->deadline <= 0)
         request->deadline = moment_monotonic() + wait;
@@ -67,9 +100,6 @@ enum handled handle_job(struct request *request)
 /* These calls take no body but an empty object. False: the reply is made. */
 static bool body_empty(struct request *request)
 {
-    static const char *const no_query[] = {NULL};
-    if (!request_query_check(request, no_query))
-        return false;
     if (request->body.length == 0 || strcmp(request->body.data, "{}") == 0)
         return true;
     json_t *errors = json_array();
@@ -97,15 +127,47 @@ job_control(struct request *request,
     return HANDLED;
 }
 
+static const struct response job_response[] = {{.status = 200,
+                                                .type = "application/json",
+                                                .schema = &schema_job,
+                                                .headers = job_headers,
+                                                .meaning = "the job as it is now"},
+                                               RESPONSE_END};
+static const unsigned int control_problems[] = {409, 412, 0};
+
+const struct operation operation_job_cancel = {
+    .summary = "Cancels a job: a queued one at once, a running one as soon as its processes end",
+    .path = operation_job_path,
+    .headers = match_headers,
+    .responses = job_response,
+    .problems = control_problems,
+};
+
 enum handled handle_job_cancel(struct request *request)
 {
     return job_control(request, jobs_cancel);
 }
 
+const struct operation operation_job_resume = {
+    .summary = "Lets a failed or cancelled job go on from its last checkpoint, as a new attempt",
+    .path = operation_job_path,
+    .headers = match_headers,
+    .responses = job_response,
+    .problems = control_problems,
+};
+
 enum handled handle_job_resume(struct request *request)
 {
     return job_control(request, jobs_resume);
 }
+
+const struct operation operation_job_delete = {
+    .summary = "Deletes a finished job and all its files",
+    .path = operation_job_path,
+    .headers = match_headers,
+    .responses = (const struct response[]){{.status = 204, .meaning = "it is gone"}, RESPONSE_END},
+    .problems = control_problems,
+};
 
 enum handled handle_job_delete(struct request *request)
 {
@@ -141,12 +203,20 @@ static void job_change(struct request *request, const json_t *body, int64_t revi
     job_release(&job);
 }
 
+const struct operation operation_job_patch = {
+    .summary = "Changes priority, labels and limits of a job, and steers a running one",
+    .path = operation_job_path,
+    .headers = match_headers,
+    .body = &schema_job_patch,
+    .responses = job_response,
+    .problems = control_problems,
+};
+
 enum handled handle_job_patch(struct request *request)
 {
-    static const char *const no_query[] = {NULL};
     int64_t revision;
     struct job job = {0};
-    if (!request_query_check(request, no_query) || !job_revision_read(request, &revision, &job))
+    if (!job_revision_read(request, &revision, &job))
         return HANDLED;
     json_t *body = body_json(request), *errors = json_array();
     if (body != NULL)

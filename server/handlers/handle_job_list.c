@@ -3,6 +3,7 @@
 #include "identifier.h"
 #include "jobs.h"
 #include "request.h"
+#include "schemas.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -72,10 +73,6 @@ static bool filter_read(struct request *request, struct store_filter *filter, ch
     const char *pair = target_query(&request->target, "label");
     const char *cursor = target_query(&request->target, "cursor");
     filter->state = state == NULL ? JOB_STATE_COUNT : job_state_find(state);
-    if (state != NULL && filter->state == JOB_STATE_COUNT) {
-        query_refused(request, "state", "queued, running, succeeded, failed or cancelled");
-        return false;
-    }
     if (pair != NULL) {
         *label = strdup(pair);
         char *colon = *label == NULL ? NULL : strchr(*label, ':');
@@ -117,17 +114,50 @@ static bool fields_check(struct request *request, const char *fields)
     return found == wanted;
 }
 
+const struct operation operation_job_list = {
+    .summary = "Jobs, newest first",
+    .query =
+        (const struct json_field[]){
+            {.key = "state",
+             .kind = FIELD_TEXT,
+             .optional = true,
+             .words = job_state_words,
+             .meaning = "only those in this state"},
+            {.key = "label",
+             .kind = FIELD_TEXT,
+             .optional = true,
+             .meaning = "KEY:VALUE: only those with this label"},
+            {.key = "fields",
+             .kind = FIELD_TEXT,
+             .optional = true,
+             .meaning = "only these members of every job, separated by commas"},
+            {.key = "limit",
+             .kind = FIELD_INTEGER,
+             .optional = true,
+             .minimum = 1,
+             .maximum = LIMIT_MAX,
+             .preset = LIMIT_DEFAULT,
+             .meaning = "so many at most"},
+            {.key = "cursor",
+             .kind = FIELD_TEXT,
+             .optional = true,
+             .meaning = "of the page before"},
+            OPERATION_END},
+    .responses = (const struct response[]){{.status = 200,
+                                            .type = "application/json",
+                                            .schema = &schema_job_list,
+                                            .meaning = "a page of jobs"},
+                                           RESPONSE_END},
+};
+
 enum handled handle_job_list(struct request *request)
 {
-    static const char *const allowed[] = {"state", "label", "fields", "limit", "cursor", NULL};
     struct talus_error error = {0};
     struct store_filter filter = {.state = JOB_STATE_COUNT};
     char *label = NULL;
-    double limit;
+    const double limit = request_query_number(request, "limit");
     const char *fields = target_query(&request->target, "fields");
-    if (!request_query_check(request, allowed) ||
-        !request_query_number(request, "limit", 1, LIMIT_MAX, LIMIT_DEFAULT, &limit) ||
-        !fields_check(request, fields) || !filter_read(request, &filter, &label)) {
+    if (!fields_check(request, fields) || !filter_read(request, &filter, &label)) {
         free(label);
         return HANDLED;
     }

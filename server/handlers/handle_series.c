@@ -3,6 +3,7 @@
 #include "decimate.h"
 #include "history_reader.h"
 #include "request.h"
+#include "schemas.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -121,12 +122,19 @@ static bool history_of_request(struct request *request, struct history_reader *h
     return status == TALUS_OK;
 }
 
+const struct operation operation_series_list = {
+    .summary = "The names of the histories of a job",
+    .path = operation_job_path,
+    .responses = (const struct response[]){{.status = 200,
+                                            .type = "application/json",
+                                            .schema = &schema_series_list,
+                                            .meaning = "all histories"},
+                                           RESPONSE_END},
+};
+
 enum handled handle_series_list(struct request *request)
 {
-    static const char *const allowed[] = {NULL};
     struct history_reader history;
-    if (!request_query_check(request, allowed))
-        return HANDLED;
     char *folder = request_folder(request);
     if (folder == NULL)
         return HANDLED;
@@ -150,7 +158,7 @@ static void series_reply(struct request *request, const struct history_reader *h
 {
     struct curve curve = {0};
     struct text text = {0};
-    size_t max_points = limits[2] > 0 ? (size_t)limits[2] : POINTS_MAX;
+    size_t max_points = (size_t)limits[2];
     const char *accept = request_header(request, MHD_HTTP_HEADER_ACCEPT);
     bool csv = accept != NULL && strstr(accept, "text/csv") != NULL;
     curve_read(&curve, history, column, limits[0], limits[1]);
@@ -167,16 +175,52 @@ static void series_reply(struct request *request, const struct history_reader *h
     curve_release(&curve);
 }
 
+static const char *const series_headers[] = {"Vary", NULL};
+
+const struct operation operation_series = {
+    .summary = "A history of a job so far",
+    .path = (const struct json_field[]){{.key = "id", .meaning = "of the job"},
+                                        {.key = "name",
+                                         .meaning = "of the history: reaction.floor.force.y, "
+                                                    "probe.runout, energy.kinetic, ..."},
+                                        OPERATION_END},
+    .query = (const struct json_field[]){{.key = "from",
+                                          .kind = FIELD_NUMBER,
+                                          .optional = true,
+                                          .preset = -HUGE_VAL,
+                                          .meaning = "[s] nothing before"},
+                                         {.key = "to",
+                                          .kind = FIELD_NUMBER,
+                                          .optional = true,
+                                          .preset = HUGE_VAL,
+                                          .meaning = "[s] nothing after"},
+                                         {.key = "max_points",
+                                          .kind = FIELD_INTEGER,
+                                          .optional = true,
+                                          .minimum = 4,
+                                          .maximum = POINTS_MAX,
+                                          .preset = POINTS_MAX,
+                                          .meaning = "thinned to so many points at most; the "
+                                                     "extremes stay"},
+                                         OPERATION_END},
+    .responses =
+        (const struct response[]){
+            {.status = 200,
+             .type = "application/json",
+             .schema = &schema_series,
+             .headers = series_headers,
+             .meaning = "the history; as text/csv: a line with the names, then time and value"},
+            {.status = 200, .type = "text/csv", .headers = series_headers, .meaning = ""},
+            RESPONSE_END},
+};
+
 enum handled handle_series(struct request *request)
 {
-    static const char *const allowed[] = {"from", "to", "max_points", NULL};
     struct history_reader history;
-    double limits[3];
-    if (!request_query_check(request, allowed) ||
-        !request_query_number(request, "from", -HUGE_VAL, HUGE_VAL, -HUGE_VAL, &limits[0]) ||
-        !request_query_number(request, "to", -HUGE_VAL, HUGE_VAL, HUGE_VAL, &limits[1]) ||
-        !request_query_number(request, "max_points", 4, POINTS_MAX, 0, &limits[2]) ||
-        !history_of_request(request, &history))
+    const double limits[3] = {request_query_number(request, "from"),
+                              request_query_number(request, "to"),
+                              request_query_number(request, "max_points")};
+    if (!history_of_request(request, &history))
         return HANDLED;
     size_t column = history_reader_find(&history, request->rest);
     if (column == 0 || column == history.column_count)

@@ -1,11 +1,22 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Version, liveness, readiness, and the JSON Schema of scenes. */
 #include "helper.h"
+#include "openapi.h"
 #include "request.h"
+#include "schemas.h"
 #include "service.h"
 #include "talus/version.h"
 
 #include <sys/statvfs.h>
+
+const struct operation operation_version = {
+    .summary = "Version and build of the daemon",
+    .responses = (const struct response[]){{.status = 200,
+                                            .type = "application/json",
+                                            .schema = &schema_version,
+                                            .meaning = "what runs here"},
+                                           RESPONSE_END},
+};
 
 enum handled handle_version(struct request *request)
 {
@@ -15,11 +26,26 @@ enum handled handle_version(struct request *request)
     return HANDLED;
 }
 
+static const struct response status_response[] = {
+    {.status = 200, .type = "application/json", .schema = &schema_status, .meaning = "all is well"},
+    RESPONSE_END};
+
+const struct operation operation_healthz = {
+    .summary = "Whether the daemon is alive",
+    .responses = status_response,
+};
+
 enum handled handle_healthz(struct request *request)
 {
     reply_json(&request->reply, MHD_HTTP_OK, json_pack("{s:s}", "status", "ok"));
     return HANDLED;
 }
+
+const struct operation operation_readyz = {
+    .summary =
+        "Whether the daemon takes jobs: 503 while it stops, the disk is low, the store fails",
+    .responses = status_response,
+};
 
 enum handled handle_readyz(struct request *request)
 {
@@ -60,7 +86,8 @@ static json_t *schema_ask(struct request *request)
     return schema;
 }
 
-enum handled handle_scene_schema(struct request *request)
+/* A copy of the schema of scenes, or NULL with the reply made; new reference. */
+static json_t *schema_copy(struct request *request)
 {
     struct service *service = request->service;
     (void)pthread_mutex_lock(&service->schema_mutex);
@@ -68,7 +95,40 @@ enum handled handle_scene_schema(struct request *request)
         service->schema = schema_ask(request);
     json_t *schema = service->schema == NULL ? NULL : json_deep_copy(service->schema);
     (void)pthread_mutex_unlock(&service->schema_mutex);
+    return schema;
+}
+
+const struct operation operation_scene_schema = {
+    .summary = "JSON Schema (2020-12) of scenes",
+    .responses = (const struct response[]){{.status = 200,
+                                            .type = "application/schema+json",
+                                            .schema = &schema_any_object,
+                                            .meaning = "the schema"},
+                                           RESPONSE_END},
+};
+
+enum handled handle_scene_schema(struct request *request)
+{
+    json_t *schema = schema_copy(request);
     if (schema != NULL)
         reply_document(&request->reply, MHD_HTTP_OK, "application/schema+json", schema);
+    return HANDLED;
+}
+
+const struct operation operation_openapi = {
+    .summary = "This interface as an OpenAPI 3.1 document",
+    .responses = (const struct response[]){{.status = 200,
+                                            .type = "application/json",
+                                            .schema = &schema_any_object,
+                                            .meaning = "the document"},
+                                           RESPONSE_END},
+};
+
+enum handled handle_openapi(struct request *request)
+{
+    json_t *scene = schema_copy(request);
+    if (scene != NULL)
+        reply_json(&request->reply, MHD_HTTP_OK, openapi_document(scene));
+    json_decref(scene);
     return HANDLED;
 }

@@ -6,6 +6,7 @@
 #include "job_reply.h"
 #include "jobs.h"
 #include "request.h"
+#include "schemas.h"
 #include "submission.h"
 
 #include <math.h>
@@ -89,12 +90,9 @@ static bool scene_check(struct request *request, struct submission *submission, 
 /* Reads the body and has the scene checked. False: the reply is made. */
 static bool submission_check(struct request *request, struct submission *submission)
 {
-    static const char *const no_query[] = {NULL};
     const json_t *scene = NULL;
     struct talus_error error = {0};
     double workers = request->service->config->workers;
-    if (!request_query_check(request, no_query))
-        return false;
     submission->body = submission->body == NULL ? body_json(request) : submission->body;
     if (submission->body == NULL)
         return false;
@@ -206,6 +204,26 @@ static void submit(struct request *request, struct submission *submission)
         reply_job(request, MHD_HTTP_CREATED, &submission->job, false);
 }
 
+static const char *const created_headers[] = {"ETag", "Location", "Idempotent-Replayed", NULL};
+
+const struct operation operation_submit = {
+    .summary = "Submits a job",
+    .headers = admission_key_headers,
+    .body = &schema_submission,
+    .responses = (const struct response[]){{.status = 201,
+                                            .type = "application/json",
+                                            .schema = &schema_job,
+                                            .headers = created_headers,
+                                            .meaning = "the job is on disk"},
+                                           {.status = 200,
+                                            .type = "application/json",
+                                            .schema = &schema_job,
+                                            .headers = created_headers,
+                                            .meaning = "with reuse: a job whose result is there"},
+                                           RESPONSE_END},
+    .problems = (const unsigned int[]){429, 507, 0},
+};
+
 enum handled handle_submit(struct request *request)
 {
     struct submission submission = {.errors = json_array()};
@@ -214,6 +232,17 @@ enum handled handle_submit(struct request *request)
     submission_release(&submission);
     return HANDLED;
 }
+
+const struct operation operation_forecast = {
+    .summary = "Checks a submission and says what it would take; makes nothing",
+    .body = &schema_submission,
+    .responses = (const struct response[]){{.status = 200,
+                                            .type = "application/json",
+                                            .schema = &schema_forecast_answer,
+                                            .meaning = "cost, advice, and the scene with every "
+                                                       "default filled in"},
+                                           RESPONSE_END},
+};
 
 enum handled handle_forecast(struct request *request)
 {

@@ -92,7 +92,7 @@ class Patch(DaemonTest):
             "disk_bytes": "many"}, "end_time": "soon", "frame_now": 1, "framenow": True})
         problem = self.assert_problem(reply, 422)
         found = {error["pointer"]: error["code"] for error in problem["errors"]}
-        self.assertEqual(found, {"/priority": "range", "/labels/a:b": "type", "/labels/d": "type",
+        self.assertEqual(found, {"/priority": "range", "/labels/a:b": "pattern", "/labels/d": "type",
                                  "/limits/wall_second": "unknown_key", "/limits/disk_bytes": "type",
                                  "/end_time": "type", "/frame_now": "type",
                                  "/framenow": "unknown_key"})
@@ -111,7 +111,7 @@ class Patch(DaemonTest):
     def test_an_end_in_the_past(self):
         job = self.running(directive={"seconds": 5, "rows": 50, "hang": True})
         wait_for(lambda: (self.client.job(job)["progress"]["time"] or 0) > 0.3, 20, "0.3 s")
-        self.assert_problem(patch(self.client, job, {"end_time": 0.2}), 422, "range", "/end_time")
+        self.assert_problem(patch(self.client, job, {"end_time": 0.2}), 422, "past", "/end_time")
 
     def test_states(self):
         busy, waiting = self.running(), self.queued()

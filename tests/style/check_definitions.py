@@ -26,6 +26,7 @@ DATA_LISTS = {
     "server/config.def",
     "server/job_columns.def",
     "server/job_states.def",
+    "server/response_headers.def",
     "server/studies/row_states.def",
     "server/studies/study_columns.def",
     "server/studies/study_states.def",

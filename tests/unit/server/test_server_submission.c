@@ -76,7 +76,9 @@ static void test_single_mistakes(void **state)
     expect("{\"scene\":{},\"priority\":101}", "/priority", "range");
     expect("{\"scene\":{},\"priority\":1.5}", "/priority", "type");
     expect("{\"scene\":{},\"priority\":\"1\"}", "/priority", "type");
-    expect("{\"scene\":{},\"threads\":9}", "/threads", "range");
+    expect("{\"scene\":{},\"threads\":9}", "/threads", "capacity");
+    expect("{\"scene\":{},\"threads\":4097}", "/threads", "range");
+    expect("{\"scene\":{},\"labels\":{\"a:b\":\"c\"}}", "/labels/a:b", "pattern");
     expect("{\"scene\":{},\"threads\":-1}", "/threads", "range");
     expect("{\"scene\":{},\"retries\":-1}", "/retries", "range");
     expect("{\"scene\":{},\"limits\":5}", "/limits", "type");
