@@ -1,0 +1,120 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Lists, and everything else, with a long history of jobs."""
+import os
+import re
+import sqlite3
+import time
+from urllib.parse import quote
+
+from service_load import Figure, polls, shipped_scene
+from service_seed import seed
+from talus_harness import wait_for
+
+GOAL_MS = 20
+PAGE = 50
+
+
+def make_originals(daemon, client, count):
+    """Jobs that ended in every way, with labels and names, run by the real worker."""
+    scene = shipped_scene("column-at-rest", duration=0.002)
+    made = []
+    for number in range(count):
+        body = {"scene": scene, "name": f"run {number} of the campaign",
+                "labels": {"campaign": f"c{number % 10}", "number": str(number), "site": "north"}}
+        if number % 10 == 8:
+            body["limits"] = {"wall_seconds": 0.001}  # fails
+            body["scene"] = dict(scene, duration=10)
+        reply = client.post("/v1/jobs", body)
+        assert reply.status == 201, reply
+        made.append(reply.json()["id"])
+        if number % 10 == 9:
+            client.post(f"/v1/jobs/{made[-1]}/cancel")
+    for job in made:
+        client.finish(job, 120)
+    return made
+
+
+def make_history(daemon, originals, count):
+    """The daemon is started again with `count` more jobs; seconds that this took it."""
+    daemon.terminate()
+    ids = seed(daemon.state, originals, count)
+    begin = time.monotonic()
+    daemon.start(wait=False)
+    wait_for(daemon.answers, 120, "the daemon answers", every=0.002)
+    return ids, time.monotonic() - begin
+
+
+def list_queries(client, count):
+    """name -> queries of GET /v1/jobs; deep ones go on from cursors far down."""
+    deep = []
+    cursor, skipped = None, 0
+    while skipped < count // 2:  # into the middle of history, in steps of 500
+        page = client.get(f"/v1/jobs?limit=500&fields=id{'&cursor=' + quote(cursor) if cursor else ''}")
+        cursor = page.json()["cursor"]
+        skipped += 500
+        if not cursor:
+            break
+        deep.append(f"limit={PAGE}&cursor={quote(cursor)}")
+    queries = {"first page": [f"limit={PAGE}"],
+               "deep pages": deep or [f"limit={PAGE}"],
+               "state=succeeded": [f"limit={PAGE}&state=succeeded"],
+               "state=failed": [f"limit={PAGE}&state=failed"],
+               "state=running (none)": [f"limit={PAGE}&state=running"],
+               "label": [f"limit={PAGE}&label={quote(f'campaign:c{n}')}" for n in range(10)],
+               "label of few": [f"limit={PAGE}&label={quote(f'number:{n}')}" for n in range(10)],
+               "label of none": [f"limit={PAGE}&label={quote('campaign:none')}"],
+               "label and state": [f"limit={PAGE}&label={quote('campaign:c8')}&state=failed"],
+               "label, deep": [f"{q}&label={quote('campaign:c3')}" for q in deep[-20:] or [f"limit={PAGE}"]],
+               "study (none)": [f"limit={PAGE}&study=none"],
+               "text": [f"limit={PAGE}&text={quote('campaign')}"],
+               "text of none": [f"limit={PAGE}&text={quote('nowhere at all')}"],
+               "ids of 500": ["limit=500&fields=id,state"]}
+    # What this build does not know yet is left out, not counted as an error.
+    return {name: [f"/v1/jobs?{query}" for query in list_of] for name, list_of in queries.items()
+            if client.get(f"/v1/jobs?{list_of[0]}").status == 200}
+
+
+def measure_lists(daemon, client, count, seconds):
+    figures, p99 = [], {}
+    for name, paths in list_queries(client, count).items():
+        load = polls(daemon, paths[:200], 1, 1, seconds)
+        label = f"list of {count}, {name}"
+        p99[name] = load["p99_ms"]
+        figures += [Figure(f"{label}: p50", load["p50_ms"], "ms"),
+                    Figure(f"{label}: p99", load["p99_ms"], "ms", GOAL_MS),
+                    Figure(f"{label}: not answered", load["failures"], "", 0, check=True)]
+    return figures, p99
+
+
+def measure_single(daemon, client, ids, seconds):
+    """Single jobs all over history, and how long a stream needs to begin."""
+    paths = [f"/v1/jobs/{job}" for job in ids[::max(1, len(ids) // 1000)]]
+    load = polls(daemon, paths, 1, 1, seconds)
+    waits = []
+    for job in ids[::max(1, len(ids) // 100)]:
+        begin = time.monotonic()
+        reply = client.get(f"/v1/jobs/{job}/events")
+        waits.append(1e3 * (time.monotonic() - begin))
+        assert b"event: done" in reply.body, reply
+    waits.sort()
+    name = f"with {len(ids)} jobs"
+    return [Figure(f"{name}, single jobs: p50", load["p50_ms"], "ms"),
+            Figure(f"{name}, single jobs: p99", load["p99_ms"], "ms", GOAL_MS),
+            Figure(f"{name}, whole story of an ended job: p50", waits[len(waits) // 2], "ms"),
+            Figure(f"{name}, whole story of an ended job: p99", waits[int(0.99 * len(waits))], "ms")]
+
+
+def full_scans(state):
+    """Queries of lists that SQLite would answer by walking over a table or by sorting, of those that
+    the daemon's source prepares; [] is good."""
+    database = sqlite3.connect(f"file:{os.path.join(state, 'talus.sqlite')}?mode=ro", uri=True)
+    found = []
+    for conditions, order in (("state = 3", "id DESC"), ("state = 0", "priority DESC, id"),
+                              ("study = 'x'", "id DESC")):
+        plan = " ".join(row[3] for row in database.execute(
+            f"EXPLAIN QUERY PLAN SELECT * FROM jobs WHERE {conditions} AND id < 'z' "
+            f"ORDER BY {order} LIMIT 50"))
+        if re.search(r"\bSCAN\b|TEMP B-TREE", plan):
+            found.append(f"{conditions}: {plan}")
+    database.close()
+    return found
