@@ -24,6 +24,7 @@ struct attempt {
     bool ended;           /* our child has ended with wait_status */
     int wait_status;
     bool cancel_requested;
+    uint64_t commit_count;   /* of the store when that was looked up */
     const char *stop_reason; /* why we stopped it ("time_limit", "disk_limit"), or NULL */
     double stop_deadline;    /* when SIGTERM becomes SIGKILL (monotonic); 0: not stopped */
     double next_disk_check;

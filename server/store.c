@@ -15,11 +15,22 @@ enum talus_status store_failure(sqlite3 *database, struct talus_error *error)
 sqlite3_stmt *store_prepare(sqlite3 *database, const char *sql, struct talus_error *error)
 {
     sqlite3_stmt *statement = NULL;
-    if (sqlite3_prepare_v2(database, sql, -1, &statement, NULL) != SQLITE_OK) {
+    while ((statement = sqlite3_next_stmt(database, statement)) != NULL) {
+        if (sqlite3_stmt_busy(statement) == 0 && strcmp(sqlite3_sql(statement), sql) == 0)
+            return statement;
+    }
+    if (sqlite3_prepare_v3(database, sql, -1, SQLITE_PREPARE_PERSISTENT, &statement, NULL) !=
+        SQLITE_OK) {
         store_failure(database, error);
         return NULL;
     }
     return statement;
+}
+
+void store_release(sqlite3_stmt *statement)
+{
+    (void)sqlite3_reset(statement);
+    (void)sqlite3_clear_bindings(statement);
 }
 
 enum talus_status store_finish(sqlite3 *database, sqlite3_stmt *statement,
@@ -30,7 +41,7 @@ enum talus_status store_finish(sqlite3 *database, sqlite3_stmt *statement,
     int step = sqlite3_step(statement);
     enum talus_status status =
         step == SQLITE_DONE || step == SQLITE_ROW ? TALUS_OK : store_failure(database, error);
-    (void)sqlite3_finalize(statement);
+    store_release(statement);
     return status;
 }
 
@@ -88,6 +99,7 @@ static void *writer_main(void *argument)
         store->first = store->last = NULL;
         (void)pthread_mutex_unlock(&store->mutex);
         bool good = writes_commit(store->writer, first);
+        atomic_fetch_add(&store->commit_count, 1);
         (void)pthread_mutex_lock(&store->mutex);
         store->broken = !good;
         while (first != NULL) {
@@ -118,6 +130,11 @@ enum talus_status store_write(struct store *store, store_apply *apply, void *con
     return write.status;
 }
 
+uint64_t store_commit_count(const struct store *store)
+{
+    return atomic_load(&store->commit_count);
+}
+
 bool store_healthy(struct store *store)
 {
     (void)pthread_mutex_lock(&store->mutex);
@@ -135,6 +152,14 @@ static bool connection_open(const char *path, sqlite3 **database)
            store_execute(*database, "PRAGMA journal_mode = WAL") &&
            store_execute(*database, "PRAGMA synchronous = FULL") &&
            store_execute(*database, "PRAGMA foreign_keys = ON");
+}
+
+static void connection_close(sqlite3 *database)
+{
+    sqlite3_stmt *statement;
+    while (database != NULL && (statement = sqlite3_next_stmt(database, NULL)) != NULL)
+        (void)sqlite3_finalize(statement);
+    (void)sqlite3_close(database);
 }
 
 enum talus_status store_open(const char *path, struct store **result, struct talus_error *error)
@@ -176,8 +201,8 @@ void store_close(struct store *store)
     (void)pthread_mutex_unlock(&store->mutex);
     if (store->started)
         (void)pthread_join(store->thread, NULL);
-    (void)sqlite3_close(store->reader);
-    (void)sqlite3_close(store->writer);
+    connection_close(store->reader);
+    connection_close(store->writer);
     (void)pthread_cond_destroy(&store->queued);
     (void)pthread_cond_destroy(&store->committed);
     (void)pthread_mutex_destroy(&store->mutex);

@@ -49,6 +49,9 @@ TALUS_MUST_CHECK enum talus_status store_open(const char *path, struct store **s
                                               struct talus_error *error);
 /* Commits what waits, then closes. NULL is fine. */
 void store_close(struct store *store);
+/* Grows with every commit, before those who wait for it go on: what was read at one count holds
+ * while the count is the same. */
+uint64_t store_commit_count(const struct store *store);
 /* Whether commits work. */
 bool store_healthy(struct store *store);
 

@@ -7,6 +7,7 @@
 
 #include <pthread.h>
 #include <sqlite3.h>
+#include <stdatomic.h>
 
 /* A write, applied on the store's thread inside a transaction of its own (a savepoint). */
 typedef enum talus_status store_apply(sqlite3 *database, void *context, struct talus_error *error);
@@ -26,15 +27,19 @@ struct store {
     pthread_cond_t queued, committed;
     pthread_t thread;
     struct store_write *first, *last;
+    atomic_uint_fast64_t commit_count;
     bool stopping, broken, started;
 };
 
 /* Queues a write and waits until it is on disk. */
 TALUS_MUST_CHECK enum talus_status store_write(struct store *store, store_apply *apply,
                                                void *context, struct talus_error *error);
-/* Prepares a statement; NULL with *error set. Finalize it. */
+/* A statement of this text, without values: one that was released, or a new one; NULL with *error
+ * set. Give it back by store_release, or finalize it if its text will not come again. */
 sqlite3_stmt *store_prepare(sqlite3 *database, const char *sql, struct talus_error *error);
-/* Steps a statement that returns no rows, then finalizes it (NULL fails). */
+/* Ends the use of a statement, which the connection keeps for the next of this text. */
+void store_release(sqlite3_stmt *statement);
+/* Steps a statement that returns no rows, then releases it (NULL fails). */
 TALUS_MUST_CHECK enum talus_status store_finish(sqlite3 *database, sqlite3_stmt *statement,
                                                 struct talus_error *error);
 /* Runs a statement that returns nothing and has one parameter. */

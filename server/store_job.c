@@ -48,7 +48,7 @@ static enum talus_status row_find(sqlite3 *database, const char *id, struct job 
         status = talus_error_set(error, TALUS_INVALID, "not_found", "", "there is no job %s", id);
     else
         status = store_failure(database, error);
-    (void)sqlite3_finalize(statement);
+    store_release(statement);
     return status;
 }
 
@@ -83,7 +83,7 @@ enum talus_status store_key_look(sqlite3 *database, const struct store_key *key,
         *result = strcmp(body, key->body) == 0 ? STORE_REPLAYED : STORE_OTHER_BODY;
         (void)snprintf(existing, 64, "%s", resource);
     }
-    (void)sqlite3_finalize(statement);
+    store_release(statement);
     return step == SQLITE_ROW || step == SQLITE_DONE ? TALUS_OK : store_failure(database, error);
 }
 
@@ -122,7 +122,7 @@ static enum talus_status queue_check(sqlite3 *database, struct insert_context *i
     bool found = sqlite3_step(statement) == SQLITE_ROW;
     if (found && sqlite3_column_int64(statement, 0) >= insert->queue_limit)
         insert->result = STORE_QUEUE_FULL;
-    (void)sqlite3_finalize(statement);
+    store_release(statement);
     return found ? TALUS_OK : store_failure(database, error);
 }
 

@@ -72,7 +72,7 @@ enum talus_status store_job_list(struct store *store, const struct store_filter 
         filter_bind_text(statement, ":value", filter->label_value);
         filter_bind_text(statement, ":before", filter->before);
         status = list_rows(store->reader, statement, visit, context, error);
-        (void)sqlite3_finalize(statement);
+        store_release(statement);
     }
     (void)pthread_mutex_unlock(&store->reader_mutex);
     text_release(&sql);
@@ -143,7 +143,7 @@ store_transitions(struct store *store, const char *id, int64_t after,
             status = transition_visit(statement, visit, context, error);
         if (status == TALUS_OK && step != SQLITE_DONE)
             status = store_failure(store->reader, error);
-        (void)sqlite3_finalize(statement);
+        store_release(statement);
     }
     (void)pthread_mutex_unlock(&store->reader_mutex);
     return status;

@@ -32,6 +32,7 @@ struct supervisor {
     struct attempt *first;
     struct scheduler scheduler;
     double start_after; /* no start before (monotonic): the last one failed */
+    uint64_t empty_at;  /* the store's commit count when nothing was queued */
 };
 
 enum talus_status supervisor_create(struct supervisor **result, struct service *service,
@@ -42,6 +43,7 @@ enum talus_status supervisor_create(struct supervisor **result, struct service *
     if (supervisor == NULL)
         return talus_error_set(error, TALUS_MEMORY, "memory", "", "out of memory");
     supervisor->service = service;
+    supervisor->empty_at = UINT64_MAX;
     (void)pthread_mutex_init(&supervisor->mutex, NULL);
     supervisor->wake = eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK);
     if (supervisor->wake >= 0)
@@ -121,16 +123,23 @@ static void attempt_stop(struct supervisor *supervisor, struct attempt *attempt,
     }
 }
 
-/* Sees to what has changed in the job, and passes it on to the worker. */
+/* Sees to what has changed in the job, and passes it on to the worker. The store is asked only when
+ * something has changed there. */
 static void attempt_refresh(struct supervisor *supervisor, struct attempt *attempt)
 {
-    struct job job = {0};
-    struct talus_error error = {0};
-    if (store_job_read(supervisor->service->store, attempt->id, &job, &error) == TALUS_OK &&
-        job.revision != attempt->revision && attempt_update(attempt, &job))
-        executor_limit(attempt->ended ? 0 : attempt->pid, attempt->folder, attempt->memory_limit,
-                       attempt->disk_limit);
-    job_release(&job);
+    struct store *store = supervisor->service->store;
+    uint64_t count = store_commit_count(store);
+    if (count != attempt->commit_count) {
+        struct job job = {0};
+        struct talus_error error = {0};
+        bool known = store_job_read(store, attempt->id, &job, &error) == TALUS_OK;
+        if (known && job.revision != attempt->revision && attempt_update(attempt, &job))
+            executor_limit(attempt->ended ? 0 : attempt->pid, attempt->folder,
+                           attempt->memory_limit, attempt->disk_limit);
+        if (known)
+            attempt->commit_count = count;
+        job_release(&job);
+    }
     /* Before its `started` line a worker may not expect a signal; it looks at its orders then. */
     if (attempt->orders_pending && attempt->worker_started) {
         attempt->orders_pending = false;
@@ -320,8 +329,12 @@ static void jobs_start(struct supervisor *supervisor, double now)
            threads_free(supervisor) > 0) {
         struct candidates candidates = {.workers = (int64_t)service->config->workers};
         struct talus_error error = {0};
-        if (store_job_list(service->store, &filter, candidate_add, &candidates, &error) != TALUS_OK)
+        uint64_t count = store_commit_count(service->store);
+        if (count == supervisor->empty_at ||
+            store_job_list(service->store, &filter, candidate_add, &candidates, &error) != TALUS_OK)
             return;
+        if (candidates.count == 0)
+            supervisor->empty_at = count;
         size_t index = scheduler_pick(&supervisor->scheduler, candidates.items, candidates.count,
                                       threads_free(supervisor), now);
         if (index == candidates.count)
