@@ -15,8 +15,10 @@ void job_etag(const struct job *job, char etag[JOB_ETAG_SIZE])
 void job_reply(struct request *request, unsigned int status, const struct job *job)
 {
     char etag[JOB_ETAG_SIZE];
+    struct text text = {0};
     job_etag(job, etag);
-    reply_json(&request->reply, status, jobs_json(request->service, job));
+    jobs_text_add(&text, request->service, job, NULL);
+    reply_json_text(&request->reply, status, &text);
     reply_header(&request->reply, MHD_HTTP_HEADER_ETAG, etag);
 }
 

@@ -1,8 +1,10 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* A job as clients see it. */
 #include "jobs.h"
+#include "json_text.h"
 #include "supervisor.h"
 
+#include <stddef.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -41,20 +43,37 @@ static json_t *progress_json(struct service *service, const struct job *job)
                : document_json(job->progress, "{\"fraction\":0,\"time\":0,\"step\":0}");
 }
 
-json_t *jobs_json(struct service *service, const struct job *job)
+/* Columns whose text is a member of the view: reading and writing them again would be most of the
+ * work that a job costs a reader. */
+static const struct {
+    const char *key;
+    size_t offset; /* in struct job */
+    const char *missing;
+} documents[] = {
+    {"steering", offsetof(struct job, steering), "null"},
+    {"labels", offsetof(struct job, labels), "{}"},
+    {"attempts", offsetof(struct job, attempts), "[]"},
+    {"forecast", offsetof(struct job, forecast), "null"},
+    {"advice", offsetof(struct job, advice), "[]"},
+    {"warnings", offsetof(struct job, warnings), "[]"},
+    {"metrics", offsetof(struct job, metrics), "null"},
+    {"receipt", offsetof(struct job, receipt), "null"},
+};
+enum { DOCUMENT_COUNT = sizeof documents / sizeof documents[0] };
+
+/* Everything but the documents that the store holds as they are told. */
+static json_t *plain_members(struct service *service, const struct job *job)
 {
     json_t *view = json_object();
     const char *state = job_state_name((enum job_state)job->state);
     (void)json_object_set_new(view, "id", json_string(job->id));
     (void)json_object_set_new(view, "name", text_json(job->name));
-    (void)json_object_set_new(view, "labels", document_json(job->labels, "{}"));
     (void)json_object_set_new(view, "state", json_string(state));
     (void)json_object_set_new(view, "reason", text_json(job->reason));
     (void)json_object_set_new(view, "detail", text_json(job->detail));
     (void)json_object_set_new(view, "owner", text_json(job->owner));
     (void)json_object_set_new(view, "reused_from", text_json(job->reused_from));
     (void)json_object_set_new(view, "steered", json_boolean(job->steered));
-    (void)json_object_set_new(view, "steering", document_json(job->steering, "null"));
     (void)json_object_set_new(view, "cancel_requested",
                               json_boolean(job->cancel_requested && job->state == JOB_RUNNING));
     (void)json_object_set_new(view, "revision", json_integer(job->revision));
@@ -65,14 +84,55 @@ json_t *jobs_json(struct service *service, const struct job *job)
     (void)json_object_set_new(view, "created_at", text_json(job->created_at));
     (void)json_object_set_new(view, "started_at", text_json(job->started_at));
     (void)json_object_set_new(view, "finished_at", text_json(job->finished_at));
-    (void)json_object_set_new(view, "attempts", document_json(job->attempts, "[]"));
     (void)json_object_set_new(view, "progress", progress_json(service, job));
-    (void)json_object_set_new(view, "forecast", document_json(job->forecast, "null"));
-    (void)json_object_set_new(view, "advice", document_json(job->advice, "[]"));
-    (void)json_object_set_new(view, "warnings", document_json(job->warnings, "[]"));
-    (void)json_object_set_new(view, "metrics", document_json(job->metrics, "null"));
-    (void)json_object_set_new(view, "receipt", document_json(job->receipt, "null"));
     (void)json_object_set_new(view, "scene_hash", text_json(job->scene_hash));
     (void)json_object_set_new(view, "links", links_json(job));
     return view;
+}
+
+/* Whether a comma-separated list (NULL: of all) has a name. */
+static bool field_wanted(const char *fields, const char *key)
+{
+    size_t length = strlen(key);
+    bool wanted = fields == NULL;
+    for (const char *field = fields; field != NULL && !wanted; field = strchr(field, ',')) {
+        field += *field == ',';
+        wanted =
+            strncmp(field, key, length) == 0 && (field[length] == ',' || field[length] == '\0');
+    }
+    return wanted;
+}
+
+static json_t *members_thin(json_t *view, const char *fields)
+{
+    const char *key;
+    json_t *value;
+    void *next;
+    json_object_foreach_safe(view, next, key, value)
+    {
+        if (!field_wanted(fields, key))
+            (void)json_object_del(view, key);
+    }
+    return view;
+}
+
+void jobs_text_add(struct text *text, struct service *service, const struct job *job,
+                   const char *fields)
+{
+    json_t *plain = members_thin(plain_members(service, job), fields);
+    const char *separator = json_object_size(plain) == 0 ? "" : ",";
+    json_text_add(text, plain, 0);
+    if (!text->failed)
+        text_cut(text, text->length - 1); /* the brace that closes it */
+    for (size_t index = 0; index < DOCUMENT_COUNT; index++) {
+        const char *const *member =
+            (const char *const *)(const void *)((const char *)job + documents[index].offset);
+        if (!field_wanted(fields, documents[index].key))
+            continue;
+        text_print(text, "%s\"%s\":", separator, documents[index].key);
+        text_add_string(text, *member == NULL ? documents[index].missing : *member);
+        separator = ",";
+    }
+    text_add_string(text, "}");
+    json_decref(plain);
 }

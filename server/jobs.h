@@ -7,13 +7,16 @@
 
 #include "job.h"
 #include "service.h"
+#include "text.h"
 
 #include <jansson.h>
 
 /* The folder of a job; free() it; NULL without memory. */
 char *jobs_folder(const struct service *service, const char *id);
-/* The job as clients see it; new reference. */
-json_t *jobs_json(struct service *service, const struct job *job);
+/* Appends the job as clients see it; of its members only those in the comma-separated `fields`
+ * (NULL: all). */
+void jobs_text_add(struct text *text, struct service *service, const struct job *job,
+                   const char *fields);
 
 /* Makes a job from what `job` already holds (its id and times are set here) and its effective
  * scene. *result tells whether the key was known; then `existing` is that job. */

@@ -16,8 +16,24 @@ static void line_begin(struct text *text, unsigned int indent, unsigned int leve
     text_print(text, "\n%*s", (int)(indent * level), "");
 }
 
+/* Whether a string is the same in JSON: nothing to escape, nothing that might not be UTF-8. */
+static bool string_is_plain(const char *string)
+{
+    for (const char *at = string; *at != '\0'; at++) {
+        if (*at < 0x20 || *at > 0x7e || *at == '"' || *at == '\\')
+            return false;
+    }
+    return true;
+}
+
 static void string_add(struct text *text, const char *string)
 {
+    if (string_is_plain(string)) {
+        text_add_string(text, "\"");
+        text_add_string(text, string);
+        text_add_string(text, "\"");
+        return;
+    }
     json_t *value = json_string(string);
     char *quoted = value == NULL ? NULL : json_dumps(value, JSON_ENCODE_ANY);
     if (quoted == NULL)

@@ -51,10 +51,19 @@ void reply_document(struct reply *reply, unsigned int status, const char *type, 
     reply_text(reply, status, type, &text);
 }
 
+void reply_json_text(struct reply *reply, unsigned int status, struct text *text)
+{
+    text_add_string(text, "\n");
+    reply_text(reply, status, "application/json", text);
+    reply_header(reply, MHD_HTTP_HEADER_CACHE_CONTROL, "no-cache");
+}
+
 void reply_json(struct reply *reply, unsigned int status, json_t *value)
 {
-    reply_document(reply, status, "application/json", value);
-    reply_header(reply, MHD_HTTP_HEADER_CACHE_CONTROL, "no-cache");
+    struct text text = {0};
+    json_text_add(&text, value, 0);
+    json_decref(value);
+    reply_json_text(reply, status, &text);
 }
 
 void reply_empty(struct reply *reply, unsigned int status)

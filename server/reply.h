@@ -23,6 +23,8 @@ struct reply {
 /* Each of these makes the whole reply; out of memory leaves `response` NULL, which the HTTP layer
  * turns into a closed connection. */
 void reply_text(struct reply *reply, unsigned int status, const char *type, struct text *text);
+/* JSON that is a text already. */
+void reply_json_text(struct reply *reply, unsigned int status, struct text *text);
 /* Takes the reference. */
 void reply_json(struct reply *reply, unsigned int status, json_t *value);
 /* The same under another media type. */

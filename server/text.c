@@ -74,6 +74,14 @@ void text_add_number(struct text *text, double value)
     text_add_string(text, number);
 }
 
+void text_cut(struct text *text, size_t length)
+{
+    if (length < text->length) {
+        text->length = length;
+        text->data[length] = '\0';
+    }
+}
+
 void text_drop(struct text *text, size_t length)
 {
     if (length > text->length)

@@ -19,6 +19,8 @@ __attribute__((format(printf, 2, 3))) void text_print(struct text *text, const c
 /* A JSON number with the fewest digits that read back to the same double; null for what JSON
  * cannot hold. */
 void text_add_number(struct text *text, double value);
+/* Shortens it to `length` bytes. */
+void text_cut(struct text *text, size_t length);
 /* Removes the first `length` bytes. */
 void text_drop(struct text *text, size_t length);
 /* Hands the string over (free() it), or NULL if it failed; the text is empty afterwards. */

@@ -12,48 +12,23 @@ enum { LIMIT_DEFAULT = 100, LIMIT_MAX = 500 };
 
 struct list {
     struct service *service;
-    json_t *jobs;
+    struct text text;   /* the answer so far */
     const char *fields; /* comma-separated, NULL: all */
-    size_t limit;
+    size_t limit, count;
     char last[IDENTIFIER_LENGTH + 1];
     bool more;
 };
 
-static bool field_wanted(const char *fields, const char *key)
-{
-    size_t length = strlen(key);
-    for (const char *field = fields; field != NULL; field = strchr(field, ',')) {
-        field += *field == ',';
-        if (strncmp(field, key, length) == 0 && (field[length] == ',' || field[length] == '\0'))
-            return true;
-    }
-    return false;
-}
-
-static json_t *view_thin(json_t *view, const char *fields)
-{
-    const char *key;
-    json_t *value;
-    void *next;
-    if (fields == NULL)
-        return view;
-    json_object_foreach_safe(view, next, key, value)
-    {
-        if (!field_wanted(fields, key))
-            (void)json_object_del(view, key);
-    }
-    return view;
-}
-
 static bool list_add(const struct job *job, void *context)
 {
     struct list *list = context;
-    if (json_array_size(list->jobs) == list->limit) {
+    if (list->count == list->limit) {
         list->more = true;
         return false;
     }
-    json_t *view = view_thin(jobs_json(list->service, job), list->fields);
-    (void)json_array_append_new(list->jobs, view);
+    if (list->count++ > 0)
+        text_add_string(&list->text, ",");
+    jobs_text_add(&list->text, list->service, job, list->fields);
     (void)strncpy(list->last, job->id, IDENTIFIER_LENGTH);
     return true;
 }
@@ -98,17 +73,15 @@ static bool fields_check(struct request *request, const char *fields)
     const struct job empty = {.id = (char[]){""}};
     if (fields == NULL)
         return true;
-    json_t *view = jobs_json(request->service, &empty);
-    size_t found = 0, wanted = 1;
-    const char *key;
-    json_t *value;
-    json_object_foreach(view, key, value)
-    {
-        found += field_wanted(fields, key);
-    }
+    struct text text = {0};
+    size_t wanted = 1;
+    jobs_text_add(&text, request->service, &empty, fields);
+    json_t *view = text.failed ? NULL : json_loadb(text.data, text.length, 0, NULL);
+    size_t found = json_object_size(view);
     for (const char *comma = strchr(fields, ','); comma != NULL; comma = strchr(comma + 1, ','))
         wanted++;
     json_decref(view);
+    text_release(&text);
     if (found != wanted)
         query_refused(request, "fields", "a list of different members of a job is wanted");
     return found == wanted;
@@ -161,19 +134,18 @@ enum handled handle_job_list(struct request *request)
         free(label);
         return HANDLED;
     }
-    struct list list = {.service = request->service,
-                        .jobs = json_array(),
-                        .fields = fields,
-                        .limit = (size_t)limit};
+    struct list list = {.service = request->service, .fields = fields, .limit = (size_t)limit};
     filter.limit = (int64_t)limit + 1;
+    text_add_string(&list.text, "{\"jobs\":[");
     if (store_job_list(request->service->store, &filter, list_add, &list, &error) == TALUS_OK) {
-        json_t *cursor = list.more ? json_string(list.last) : json_null();
-        reply_json(&request->reply, MHD_HTTP_OK,
-                   json_pack("{s:O, s:o}", "jobs", list.jobs, "cursor", cursor));
+        const char *quote = list.more ? "\"" : "";
+        text_print(&list.text, "],\"cursor\":%s%s%s}", quote, list.more ? list.last : "null",
+                   quote);
+        reply_json_text(&request->reply, MHD_HTTP_OK, &list.text);
     } else {
         reply_error(&request->reply, request->raw, &error);
     }
-    json_decref(list.jobs);
+    text_release(&list.text);
     free(label);
     return HANDLED;
 }
