@@ -2,6 +2,7 @@
 /* What a run would cost: the solver's own estimate, bytes on disk, and wall seconds from measured
  * rates. */
 #include "scene/scene_component.h"
+#include "scene/scene_cost.h"
 #include "scene/scene_json.h"
 
 #include "materials/material.h"
@@ -59,8 +60,7 @@ static double frame_components(const struct talus_scene *scene)
     return components;
 }
 
-/* Bytes of all frames, without compression. */
-static double frame_bytes(const struct talus_scene *scene, double particles)
+double scene_frame_bytes(const struct talus_scene *scene, double particles)
 {
     const double topology = 8.0 + 8.0 + 1.0; /* connectivity, offset, cell type of a vertex */
     const double header = 20000.0;           /* of a file with its datasets and attributes */
@@ -84,7 +84,7 @@ static double column_count(const struct talus_scene *scene)
     return columns;
 }
 
-static double history_bytes(const struct talus_scene *scene)
+double scene_history_bytes(const struct talus_scene *scene)
 {
     const double copies = 8.0 + 8.0 + 18.0; /* history.bin, results.h5, a number as text */
     double rows = scene->duration / scene->output.history_every + 2.0;
@@ -148,7 +148,8 @@ json_t *scene_forecast(const struct talus_scene *scene, int threads, struct talu
     if (talus_simulation_estimate(scene, &estimate, error) != TALUS_OK)
         return NULL;
     double checkpoint = (double)estimate.particle_count * (double)estimate.bytes_per_particle;
-    double written = frame_bytes(scene, (double)estimate.particle_count) + history_bytes(scene);
+    double written =
+        scene_frame_bytes(scene, (double)estimate.particle_count) + scene_history_bytes(scene);
     double copies =
         frames_in_flight * 8.0 * frame_components(scene) * (double)estimate.particle_count +
         (scene->output.checkpoint_every > 0.0 ? checkpoint : 0.0);

@@ -94,5 +94,6 @@ const struct shape shape_cpdi_hybrid = {
     .courant_limit = {1.24, 0.49, 1.24},
     .reach = CPDI_REACH,
     .domain = &domain,
+    .locks = true,
     .kernels = {&cpdi_kernels_1, &cpdi_kernels_2, &cpdi_kernels_3},
 };

@@ -196,5 +196,6 @@ const struct shape shape_gimp_scaled = {
     .courant_limit = {1.26, 0.58, 1.26},
     .reach = 1,
     .domain = &domain,
+    .locks = true,
     .kernels = {&gimp_kernels_1, &gimp_kernels_2, &gimp_kernels_3},
 };

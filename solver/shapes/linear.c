@@ -25,5 +25,6 @@ const struct shape shape_linear = {
      * fluid, with one to four particles per cell and axis. */
     .courant_limit = {1.26, 0.63, 1.26},
     .light_nodes = true,
+    .locks = true,
     .kernels = {&linear_kernels_1, &linear_kernels_2, &linear_kernels_3},
 };

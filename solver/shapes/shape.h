@@ -124,6 +124,8 @@ struct shape {
     /* G^2/N of a node has no bound: a particle that has just entered a cell pulls at nodes that
      * carry hardly any mass. */
     bool light_nodes;
+    /* Made of hat functions: where material keeps its volume it is too stiff without averages. */
+    bool locks;
     /* Cells beyond its own that a particle can reach, at most REACH_MAX (state/sparse_grid.h). */
     uint32_t reach;
     const struct shape_domain *domain; /* NULL: particles are points */

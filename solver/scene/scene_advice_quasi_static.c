@@ -1,0 +1,145 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* Dynamic runs of something quasi-static: solids that are loaded so slowly, or for so long, that
+ * inertia plays no part in the answer. What follows a load within its time t does so with kinetic
+ * energy of about (T / t)^2 of the strain energy, T being the period of the slowest vibration. */
+#include "scene/scene_advice.h"
+#include "scene/scene_geometry.h"
+#include "scene/scene_loading.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+/* Periods that a load has to take for inertia to be worth less than a hundredth: (1/20)^2 while it
+ * grows steadily, 1 / (20 pi) at the kink where it starts. */
+static const double slow_periods = 20.0;
+static const double gain_min = 4.0; /* below it nobody is told */
+
+/* ---- loads that grow slowly: the same in less time ---- */
+
+/* By how much the process may be faster. */
+static double possible_gain(const struct scene_loading *loading)
+{
+    double gain = loading->load_time / (slow_periods * loading->period);
+    if (loading->push_speed > 0.0)
+        gain = fmin(gain, loading->push_speed_max / loading->push_speed);
+    return gain;
+}
+
+/* Velocities that are plain numbers can be scaled for the user; tables cannot. */
+static json_t *faster(const struct talus_scene *scene, double gain)
+{
+    bool plain = scene->reference_count == 0;
+    json_t *set = json_pack("{s:f, s:f, s:f}", "/duration", scene->duration / gain,
+                            "/output/frames/every", scene->output.frames_every / gain,
+                            "/output/history/every", scene->output.history_every / gain);
+    for (size_t index = 0; index < scene->probe_count; index++)
+        plain = plain && isnan(scene->probes[index].mean_from);
+    for (size_t index = 0; index < scene->boundary_count && plain; index++) {
+        const struct talus_boundary *boundary = &scene->boundaries[index];
+        char pointer[64];
+        if (boundary->prescribed == 0)
+            continue;
+        json_t *velocity = json_array();
+        for (size_t k = 0; k < scene->axis_count; k++) {
+            plain = plain && boundary->velocity_tables[k].count == 0;
+            (void)json_array_append_new(velocity, json_real(gain * boundary->velocity[k]));
+        }
+        (void)snprintf(pointer, sizeof pointer, "/boundaries/%zu/velocity", index);
+        (void)json_object_set_new(set, pointer, velocity);
+    }
+    if (plain && !scene_loading_has_tables(scene) && scene->solver.force_ramp == 0.0)
+        return set;
+    json_decref(set);
+    return NULL;
+}
+
+static void advise_faster(struct scene_advice *advice, const struct scene_loading *loading)
+{
+    const double gain = possible_gain(loading);
+    char detail[192], change[192], saves[64];
+    if (gain < gain_min)
+        return;
+    (void)snprintf(
+        detail, sizeof detail,
+        "loads grow over %.3g s, %.0f periods of the slowest vibration (%.2g s): inertia "
+        "plays no part",
+        loading->load_time, loading->load_time / loading->period, loading->period);
+    (void)snprintf(change, sizeof change,
+                   "everything %.2g times as fast: velocities of boundaries, times of tables, "
+                   "ramps, \"duration\": %.3g and the intervals of outputs",
+                   gain, advice->scene->duration / gain);
+    (void)snprintf(saves, sizeof saves, "a factor of %.2g in steps and wall time", gain);
+    scene_advise(advice, &(struct scene_advice_item){
+                             .pointer = "/duration",
+                             .code = "quasi_static",
+                             .detail = detail,
+                             .change = change,
+                             .saves = saves,
+                             .set = faster(advice->scene, gain),
+                             .quantity = "particle_steps",
+                             .factor = gain,
+                         });
+}
+
+/* ---- loads that are there at once, for long: rest is reached sooner ---- */
+
+/* The local damping takes its share s of the out-of-balance force: a vibration loses exp(-2 s) a
+ * period, and a thousandth is left after 3.5 / s of them. */
+static const double thousandth = 3.5;
+static const double rest_damping = 0.3;
+static const double rest_ramp = 5.0;      /* periods */
+static const double rest_duration = 20.0; /* periods: the ramp, and thousandth / rest_damping */
+
+static void advise_rest(struct scene_advice *advice, const struct scene_loading *loading)
+{
+    const struct talus_solver_options *solver = &advice->scene->solver;
+    const double enough = rest_duration * loading->period;
+    const bool damped = solver->local_damping > 0.0;
+    const double own =
+        damped ? solver->force_ramp + thousandth / solver->local_damping * loading->period : 0.0;
+    const double duration = damped ? fmax(own, enough) : enough;
+    const double gain = advice->scene->duration / duration;
+    char detail[192], change[192], saves[128];
+    if (gain < gain_min)
+        return;
+    (void)snprintf(detail, sizeof detail,
+                   "a constant load for %.0f periods of the slowest vibration (%.2g s), which %s",
+                   advice->scene->duration / loading->period, loading->period,
+                   damped ? "is damped out long before the end" : "never comes to rest");
+    if (damped)
+        (void)snprintf(change, sizeof change, "\"duration\": %.3g", duration);
+    else
+        (void)snprintf(change, sizeof change,
+                       "if rest is the aim: \"stabilise\": {\"local_damping\": %.1f, "
+                       "\"force_ramp\": %.3g}, \"duration\": %.3g",
+                       rest_damping, rest_ramp * loading->period, duration);
+    (void)snprintf(saves, sizeof saves, "a factor of %.2g in steps and wall time%s", gain,
+                   damped ? "" : ", and forces that do not ring");
+    json_t *set = json_pack("{s:f}", "/duration", duration);
+    if (!damped) {
+        (void)json_object_set_new(set, "/solver/stabilise/local_damping", json_real(rest_damping));
+        (void)json_object_set_new(set, "/solver/stabilise/force_ramp",
+                                  json_real(rest_ramp * loading->period));
+    }
+    scene_advise(advice, &(struct scene_advice_item){
+                             .pointer = "/duration",
+                             .code = "quasi_static",
+                             .detail = detail,
+                             .change = change,
+                             .saves = saves,
+                             .set = set,
+                             .quantity = "particle_steps",
+                             .factor = gain,
+                         });
+}
+
+void scene_advise_quasi_static(struct scene_advice *advice)
+{
+    struct scene_loading loading;
+    scene_loading_init(&loading, advice->scene);
+    if (loading.kind == SCENE_LOADING_SLOW)
+        advise_faster(advice, &loading);
+    if (loading.kind == SCENE_LOADING_CONSTANT)
+        advise_rest(advice, &loading);
+}
