@@ -30,6 +30,7 @@ DATA_LISTS = {
     "server/studies/row_states.def",
     "server/studies/study_columns.def",
     "server/studies/study_states.def",
+    "server/sobol_directions.def",
     "solver/base/messages.def",
     "solver/explicit/courant_limits.def",
     "solver/materials/cone_parameters.def",
