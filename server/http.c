@@ -3,6 +3,7 @@
 
 #include "http_checks.h"
 #include "http_watch.h"
+#include "job_cache.h"
 #include "request.h"
 #include "work_lanes.h"
 
@@ -11,7 +12,7 @@
 #include <string.h>
 #include <unistd.h>
 
-enum { CONNECTION_MEMORY = 64 << 10, IDLE_SECONDS = 120 };
+enum { CONNECTION_MEMORY = 32 << 10, IDLE_SECONDS = 120 };
 
 struct http_server {
     struct service *service;
@@ -137,6 +138,8 @@ static enum MHD_Result request_dispatch(struct http_server *server, struct reque
         (void)request->route->handle(request);
         return reply_queue(request);
     }
+    if (request->route->lane == LANE_KEPT && job_cache_answer(request))
+        return reply_queue(request);
     struct MHD_Connection *connection = request->connection;
     MHD_suspend_connection(connection);
     if (!lanes_hand_in(server->service->lanes, request)) {

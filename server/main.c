@@ -11,15 +11,24 @@
 #include <unistd.h>
 
 enum { EXIT_USAGE = 2 };
+/* Descriptors for files of jobs, the store, helpers and workers. */
+static const double descriptors_beside = 512;
 
-/* Readers and jobs need descriptors; the usual soft limit is for programs that use select(). */
-static void descriptors_raise(void)
+/* Readers and jobs need descriptors; the usual soft limit is for programs that use select(). Says
+ * so if the hard limit is too low for the connections that are allowed. */
+static void descriptors_raise(const struct config *config)
 {
     struct rlimit limit;
-    if (getrlimit(RLIMIT_NOFILE, &limit) == 0 && limit.rlim_cur < limit.rlim_max) {
-        limit.rlim_cur = limit.rlim_max;
-        (void)setrlimit(RLIMIT_NOFILE, &limit);
-    }
+    if (getrlimit(RLIMIT_NOFILE, &limit) != 0)
+        return;
+    limit.rlim_cur = limit.rlim_max;
+    (void)setrlimit(RLIMIT_NOFILE, &limit);
+    if ((double)limit.rlim_max < config->connections + descriptors_beside)
+        (void)fprintf(stderr,
+                      "talusd: warning: this system allows a process %llu open files, too few for "
+                      "%.0f connections: raise the limit (LimitNOFILE= of a service, ulimit -Hn) "
+                      "or lower `connections`\n",
+                      (unsigned long long)limit.rlim_max, config->connections);
 }
 
 /* Serves until a signal asks to stop. */
@@ -35,7 +44,7 @@ static enum talus_status serve(const struct config *config, struct talus_error *
     (void)sigaddset(&signals, SIGHUP);
     (void)pthread_sigmask(SIG_BLOCK, &signals, NULL);
     (void)signal(SIGPIPE, SIG_IGN);
-    descriptors_raise();
+    descriptors_raise(config);
     enum talus_status status = address_listen(config->listen, &listener, address, error);
     if (status == TALUS_OK)
         status = service_start(&service, config, listener, error);

@@ -51,6 +51,17 @@ void reply_document(struct reply *reply, unsigned int status, const char *type, 
     reply_text(reply, status, type, &text);
 }
 
+void reply_json_shared(struct reply *reply, unsigned int status, char *data, size_t length,
+                       void (*release)(void *context), void *context)
+{
+    struct MHD_Response *response =
+        MHD_create_response_from_buffer_with_free_callback_cls(length, data, release, context);
+    if (response == NULL)
+        release(context);
+    reply_begin(reply, status, response, "application/json");
+    reply_header(reply, MHD_HTTP_HEADER_CACHE_CONTROL, "no-cache");
+}
+
 void reply_json_text(struct reply *reply, unsigned int status, struct text *text)
 {
     text_add_string(text, "\n");

@@ -25,6 +25,10 @@ struct reply {
 void reply_text(struct reply *reply, unsigned int status, const char *type, struct text *text);
 /* JSON that is a text already. */
 void reply_json_text(struct reply *reply, unsigned int status, struct text *text);
+/* JSON with its newline that others use too: `release` is called once when it is not needed any
+ * more, also if the reply could not be made. */
+void reply_json_shared(struct reply *reply, unsigned int status, char *data, size_t length,
+                       void (*release)(void *context), void *context);
 /* Takes the reference. */
 void reply_json(struct reply *reply, unsigned int status, json_t *value);
 /* The same under another media type. */

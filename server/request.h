@@ -19,7 +19,7 @@ struct helper;
 struct event_stream;
 struct connection_watch;
 
-enum lane { LANE_INLINE, LANE_QUICK, LANE_HELPER };
+enum lane { LANE_INLINE, LANE_KEPT, LANE_QUICK, LANE_HELPER };
 enum handled {
     HANDLED,        /* request->reply is made */
     HANDLED_PARKED, /* a wait holds the request and will hand it in again */

@@ -5,6 +5,7 @@
 #include "file_checksums.h"
 #include "folder.h"
 #include "http.h"
+#include "job_cache.h"
 #include "jobs.h"
 #include "moment.h"
 #include "recovery.h"
@@ -81,6 +82,8 @@ static enum talus_status parts_create(struct service *service, struct talus_erro
     if (status == TALUS_OK)
         status = supervisor_create(&service->supervisor, service, error);
     if (status == TALUS_OK)
+        status = job_cache_create(&service->job_cache, error);
+    if (status == TALUS_OK)
         status = recovery_run(service, error);
     if (status == TALUS_OK)
         status = lanes_create(&service->lanes, service->config, error);
@@ -90,6 +93,7 @@ static enum talus_status parts_create(struct service *service, struct talus_erro
 static void parts_destroy(struct service *service)
 {
     lanes_destroy(service->lanes);
+    job_cache_destroy(service->job_cache);
     supervisor_destroy(service->supervisor);
     events_destroy(service->events);
     waits_destroy(service->waits);

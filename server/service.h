@@ -19,6 +19,7 @@ struct events;
 struct supervisor;
 struct http_server;
 struct file_checksums;
+struct job_cache;
 
 struct service {
     const struct config *config;
@@ -35,6 +36,7 @@ struct service {
     struct waits *waits;
     struct events *events;
     struct supervisor *supervisor;
+    struct job_cache *job_cache;
     struct lanes *lanes;
     struct http_server *http;
 };

@@ -32,7 +32,8 @@ struct supervisor {
     struct attempt *first;
     struct scheduler scheduler;
     double start_after; /* no start before (monotonic): the last one failed */
-    uint64_t empty_at;  /* the store's commit count when nothing was queued */
+    atomic_uint_fast64_t progress_count;
+    uint64_t empty_at; /* the store's commit count when nothing was queued */
 };
 
 enum talus_status supervisor_create(struct supervisor **result, struct service *service,
@@ -70,6 +71,11 @@ json_t *supervisor_progress(struct supervisor *supervisor, const char *id)
     }
     (void)pthread_mutex_unlock(&supervisor->mutex);
     return progress;
+}
+
+uint64_t supervisor_progress_count(const struct supervisor *supervisor)
+{
+    return atomic_load(&supervisor->progress_count);
 }
 
 /* Adds an attempt of a job that runs, with its child or (0) adopted. */
@@ -170,7 +176,10 @@ static void attempt_check(struct supervisor *supervisor, struct attempt *attempt
 static void attempt_follow(struct supervisor *supervisor, struct attempt *attempt)
 {
     (void)pthread_mutex_lock(&supervisor->mutex);
+    int64_t before = attempt->tail.offset;
     attempt_read(attempt);
+    if (attempt->tail.offset > before)
+        (void)atomic_fetch_add(&supervisor->progress_count, 1);
     (void)pthread_mutex_unlock(&supervisor->mutex);
 }
 

@@ -25,5 +25,7 @@ void supervisor_destroy(struct supervisor *supervisor);
 void supervisor_wake(struct supervisor *supervisor);
 /* The last progress of a running job, or NULL; new reference. */
 json_t *supervisor_progress(struct supervisor *supervisor, const char *id);
+/* Grows when the progress of any job has changed. */
+uint64_t supervisor_progress_count(const struct supervisor *supervisor);
 
 #endif

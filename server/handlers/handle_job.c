@@ -3,6 +3,7 @@
 #include "admission.h"
 #include "body.h"
 #include "byte_range.h"
+#include "job_cache.h"
 #include "job_patch.h"
 #include "job_reply.h"
 #include "jobs.h"
@@ -77,6 +78,7 @@ enum handled handle_job(struct request *request)
     for (;;) {
         struct job job;
         uint64_t mark = waits_mark(service->waits);
+        const struct job_cache_mark read_at = job_cache_mark(service);
         if (!request_job(request, &job))
             return HANDLED;
         if (answer_due(request, &job, wait, known)) {
@@ -86,7 +88,7 @@ enum handled handle_job(struct request *request)
                 reply_empty(&request->reply, MHD_HTTP_NOT_MODIFIED);
                 reply_header(&request->reply, MHD_HTTP_HEADER_ETAG, etag);
             } else {
-                job_reply(request, MHD_HTTP_OK, &job);
+                job_cache_reply(request, &job, read_at);
             }
             job_release(&job);
             return HANDLED;
