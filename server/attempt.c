@@ -88,6 +88,7 @@ static bool attempt_line(char *line, size_t length, int64_t end, void *context)
     case PROTOCOL_PROGRESS:
         json_decref(attempt->progress);
         attempt->progress = progress_members(root);
+        attempt->progress_count++;
         break;
     case PROTOCOL_FINISHED:
     case PROTOCOL_FAILED:

@@ -31,7 +31,8 @@ struct attempt {
     struct event_tail tail;
     bool worker_started; /* its `started` line is there */
     json_t *progress;    /* the last one */
-    json_t *last;        /* `finished` or `failed` */
+    uint64_t progress_count;
+    json_t *last; /* `finished` or `failed` */
     struct attempt *next;
 };
 

@@ -16,11 +16,11 @@ enum { STREAM_BLOCK_BYTES = 8192 };
 static const double tick_seconds = 0.1;
 static const double comment_seconds = 15;
 
-/* One reader. The events thread owns the stream; `ready` and the flags belong to the mutex. */
+/* One reader. The events thread owns the source; `ready` and the flags belong to the mutex. */
 struct subscription {
     struct events *events;
     struct MHD_Connection *connection;
-    struct event_stream stream;
+    struct event_source source;
     struct text ready; /* for the HTTP thread */
     size_t sent;       /* bytes of it that are gone */
     double last_sent;  /* when the reader last took something */
@@ -34,6 +34,7 @@ struct events {
     pthread_cond_t wake;
     pthread_t thread;
     struct subscription *first;
+    struct feed *feed;
     bool woken, ending, stopping;
 };
 
@@ -78,19 +79,10 @@ static void subscription_free(void *context)
     (void)pthread_mutex_unlock(&own->events->mutex);
 }
 
-/* Fills a stream whose reader has taken all; called without the mutex. */
-static void subscription_fill(struct subscription *own, bool idle, bool stalled)
-{
-    struct event_stream *stream = &own->stream;
-    if (idle && !stream->done)
-        (void)event_stream_fill(stream);
-    if (stalled)
-        event_stream_skip(stream);
-}
-
 static void subscription_service(struct subscription *own, double now)
 {
     struct events *events = own->events;
+    struct text *out = event_source_out(&own->source);
     const struct config *config = events->service->config;
     (void)pthread_mutex_lock(&events->mutex);
     bool idle = own->ready.length == 0 && !own->ended && !own->closed;
@@ -98,18 +90,19 @@ static void subscription_service(struct subscription *own, double now)
     bool stalled = own->ready.length > 0 && !own->closed && !own->ended;
     (void)pthread_mutex_unlock(&events->mutex);
     stalled = stalled && silent > config->gap_seconds &&
-              (double)event_stream_backlog(&own->stream) > config->gap_bytes;
-    if (idle || stalled)
-        subscription_fill(own, idle, stalled);
-    if (idle && own->stream.out.length == 0 && silent >= comment_seconds)
-        text_add_string(&own->stream.out, ": still here\n\n");
+              (double)event_source_backlog(&own->source) > config->gap_bytes;
+    if (idle)
+        event_source_fill(&own->source);
+    if (stalled)
+        event_source_skip(&own->source);
+    if (idle && out->length == 0 && silent >= comment_seconds)
+        text_add_string(out, ": still here\n\n");
     (void)pthread_mutex_lock(&events->mutex);
-    bool produced = own->stream.out.length > 0;
-    if (produced)
-        text_add(&own->ready, own->stream.out.data, own->stream.out.length);
-    if (own->stream.done || own->ready.failed || own->stream.out.failed || events->ending)
+    if (out->length > 0)
+        text_add(&own->ready, out->data, out->length);
+    if (event_source_done(&own->source) || own->ready.failed || out->failed || events->ending)
         own->ended = true;
-    text_release(&own->stream.out);
+    text_release(out);
     if (own->suspended && (own->ready.length > 0 || own->ended) && !own->closed) {
         own->suspended = false;
         if (idle)
@@ -129,7 +122,7 @@ static void subscriptions_sweep(struct events *events)
             continue;
         }
         *link = own->next;
-        event_stream_close(&own->stream);
+        event_source_close(&own->source);
         text_release(&own->ready);
         free(own);
     }
@@ -158,9 +151,14 @@ static void *events_main(void *argument)
         events_wait(events);
         subscriptions_sweep(events);
         struct subscription *first = events->first;
+        bool of_all = false;
+        for (const struct subscription *own = first; own != NULL; own = own->next)
+            of_all = of_all || own->source.of_all;
         (void)pthread_mutex_unlock(&events->mutex);
         /* Readers are only added at the head and only removed by this thread. */
         double now = moment_monotonic();
+        if (of_all)
+            feed_refresh(events->feed);
         for (struct subscription *own = first; own != NULL; own = own->next)
             subscription_service(own, now);
         waits_tick(events->service->waits);
@@ -181,11 +179,15 @@ enum talus_status events_create(struct events **result, struct service *service,
     events->service = service;
     (void)pthread_mutex_init(&events->mutex, NULL);
     (void)pthread_cond_init(&events->wake, NULL);
-    if (pthread_create(&events->thread, NULL, events_main, events) == 0)
+    enum talus_status status = feed_create(&events->feed, service->store, error);
+    if (status == TALUS_OK && pthread_create(&events->thread, NULL, events_main, events) != 0)
+        status = talus_error_set(error, TALUS_INTERNAL, "thread", "", "cannot start a thread");
+    if (status == TALUS_OK)
         return TALUS_OK;
+    feed_destroy(events->feed);
     free(events);
     *result = NULL;
-    return talus_error_set(error, TALUS_INTERNAL, "thread", "", "cannot start a thread");
+    return status;
 }
 
 void events_destroy(struct events *events)
@@ -197,12 +199,19 @@ void events_destroy(struct events *events)
     (void)pthread_cond_signal(&events->wake);
     (void)pthread_mutex_unlock(&events->mutex);
     (void)pthread_join(events->thread, NULL);
+    feed_destroy(events->feed);
     (void)pthread_cond_destroy(&events->wake);
     (void)pthread_mutex_destroy(&events->mutex);
     free(events);
 }
 
-void events_subscribe(struct events *events, struct request *request, struct event_stream *stream)
+struct feed *events_feed(struct events *events)
+{
+    return events->feed;
+}
+
+void events_subscribe(struct events *events, struct request *request,
+                      const struct event_source *source)
 {
     struct subscription *own = calloc(1, sizeof *own);
     struct MHD_Response *response =
@@ -211,12 +220,13 @@ void events_subscribe(struct events *events, struct request *request, struct eve
                                                         subscription_read, own, subscription_free);
     if (response == NULL) {
         free(own);
-        event_stream_close(stream);
+        struct event_source unused = *source;
+        event_source_close(&unused);
         return;
     }
     own->events = events;
     own->connection = request->connection;
-    own->stream = *stream;
+    own->source = *source;
     own->last_sent = moment_monotonic();
     /* Also pushes the header fields out. */
     text_add_string(&own->ready, "retry: 1000\n\n");

@@ -4,7 +4,7 @@
 #ifndef TALUS_EVENTS_H
 #define TALUS_EVENTS_H
 
-#include "event_stream.h"
+#include "event_source.h"
 #include "request.h"
 #include "talus/status.h"
 
@@ -15,8 +15,11 @@ TALUS_MUST_CHECK enum talus_status events_create(struct events **events, struct 
                                                  struct talus_error *error);
 /* Every stream must have been ended and its connection closed. NULL is fine. */
 void events_destroy(struct events *events);
-/* Answers a request with a stream, which is taken over. */
-void events_subscribe(struct events *events, struct request *request, struct event_stream *stream);
+/* Answers a request with what a source has, which is taken over. */
+void events_subscribe(struct events *events, struct request *request,
+                      const struct event_source *source);
+/* The feed of all jobs. */
+struct feed *events_feed(struct events *events);
 /* Looks at the files now. */
 void events_wake(struct events *events);
 /* Ends all streams and lets no new one last. */

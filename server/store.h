@@ -43,6 +43,13 @@ struct store_transition {
     const char *at, *state, *reason, *detail;
 };
 
+/* A row of the transition tables: of a job or of a study; texts are borrowed. */
+struct store_change {
+    int64_t row, attempt;
+    bool study;
+    const char *id, *at, *state, *reason, *detail;
+};
+
 /* Opens or makes the database and starts the writer. TALUS_IO if it cannot be opened or was written
  * by a newer version. */
 TALUS_MUST_CHECK enum talus_status store_open(const char *path, struct store **store,
@@ -97,5 +104,15 @@ store_transitions(struct store *store, const char *id, int64_t after,
                   enum talus_status (*visit)(const struct store_transition *transition,
                                              void *context, struct talus_error *error),
                   void *context, struct talus_error *error);
+
+/* Visits at most `limit` transitions of all jobs and studies behind a row, in order, until `visit`
+ * is false; it must not call the store. */
+TALUS_MUST_CHECK enum talus_status store_changes(struct store *store, int64_t after, int64_t limit,
+                                                 bool (*visit)(const struct store_change *change,
+                                                               void *context),
+                                                 void *context, struct talus_error *error);
+/* The last row there was. */
+TALUS_MUST_CHECK enum talus_status store_changes_last(struct store *store, int64_t *row,
+                                                      struct talus_error *error);
 
 #endif

@@ -2,6 +2,7 @@
 #include "supervisor.h"
 
 #include "attempt.h"
+#include "events.h"
 #include "executor_local.h"
 #include "folder.h"
 #include "jobs.h"
@@ -176,11 +177,16 @@ static void attempt_check(struct supervisor *supervisor, struct attempt *attempt
 static void attempt_follow(struct supervisor *supervisor, struct attempt *attempt)
 {
     (void)pthread_mutex_lock(&supervisor->mutex);
-    int64_t before = attempt->tail.offset;
+    const int64_t before = attempt->tail.offset;
+    const uint64_t told = attempt->progress_count;
     attempt_read(attempt);
     if (attempt->tail.offset > before)
         (void)atomic_fetch_add(&supervisor->progress_count, 1);
+    json_t *progress = attempt->progress_count == told ? NULL : json_incref(attempt->progress);
     (void)pthread_mutex_unlock(&supervisor->mutex);
+    if (progress != NULL)
+        feed_progress(events_feed(supervisor->service->events), attempt->id, progress);
+    json_decref(progress);
 }
 
 static const struct job_outcome folder_gone = {

@@ -1,10 +1,12 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* GET /v1/jobs/ID/events */
+/* GET /v1/jobs/ID/events and /v1/events */
 #include "events.h"
 #include "request.h"
 #include "service.h"
 
+#include <errno.h>
 #include <stdlib.h>
+#include <string.h>
 
 const struct operation operation_job_events = {
     .summary = "What happens to a job, from its start, as Server-Sent Events",
@@ -32,7 +34,8 @@ const struct operation operation_job_events = {
 enum handled handle_job_events(struct request *request)
 {
     struct talus_error error = {0};
-    struct event_stream stream;
+    struct event_source source = {0};
+    struct event_stream *stream = &source.stream;
     struct event_id after = {0};
     const char *id = request_header(request, "Last-Event-ID");
     if (id == NULL)
@@ -45,23 +48,80 @@ enum handled handle_job_events(struct request *request)
     char *folder = request_folder(request);
     if (folder == NULL)
         return HANDLED;
-    if (event_stream_open(&stream, folder, after, &error) != TALUS_OK) {
+    if (event_stream_open(stream, folder, after, &error) != TALUS_OK) {
         if (error.status == TALUS_INVALID)
             reply_problem(&request->reply, MHD_HTTP_UNPROCESSABLE_CONTENT, "event_id", request->raw,
                           NULL, "%s", error.text);
         else
             reply_error(&request->reply, request->raw, &error);
     } else {
-        (void)event_stream_fill(&stream);
-        if (stream.done && stream.out.length == 0) {
+        (void)event_stream_fill(stream);
+        if (stream->done && stream->out.length == 0) {
             /* Tells a browser's EventSource not to connect again. */
             reply_empty(&request->reply, MHD_HTTP_NO_CONTENT);
             request->reply.close = true;
-            event_stream_close(&stream);
+            event_stream_close(stream);
         } else {
-            events_subscribe(request->service->events, request, &stream);
+            events_subscribe(request->service->events, request, &source);
         }
     }
     free(folder);
+    return HANDLED;
+}
+
+const struct operation operation_events = {
+    .summary = "What happens to all jobs and studies, as Server-Sent Events",
+    .query = (const struct json_field[]){{.key = "after",
+                                          .kind = FIELD_TEXT,
+                                          .optional = true,
+                                          .meaning = "id of the event behind which to go on; "
+                                                     "'latest': only what happens from now on"},
+                                         OPERATION_END},
+    .headers = (const struct json_field[]){{.key = "Last-Event-ID",
+                                            .kind = FIELD_TEXT,
+                                            .optional = true,
+                                            .meaning = "the same, as browsers send it"},
+                                           OPERATION_END},
+    .responses =
+        (const struct response[]){
+            {.status = 200,
+             .type = "text/event-stream",
+             .meaning = "events state and done of jobs, study of studies, with growing ids; "
+                        "progress of running jobs without one, which is not told again; gap"},
+            RESPONSE_END},
+};
+
+/* "ROW" or "latest"; false for anything else. */
+static bool row_parse(struct feed *feed, const char *text, int64_t *row)
+{
+    char *end = NULL;
+    *row = 0;
+    if (text == NULL || text[0] == '\0')
+        return true;
+    if (strcmp(text, "latest") == 0) {
+        *row = feed_last(feed);
+        return true;
+    }
+    errno = 0;
+    *row = strtoll(text, &end, 10);
+    return text[0] >= '0' && text[0] <= '9' && *end == '\0' && errno == 0 &&
+           *row <= feed_last(feed);
+}
+
+enum handled handle_events(struct request *request)
+{
+    struct feed *feed = events_feed(request->service->events);
+    struct event_source source = {.of_all = true};
+    int64_t row = 0;
+    const char *id = request_header(request, "Last-Event-ID");
+    if (id == NULL)
+        id = target_query(&request->target, "after");
+    if (!row_parse(feed, id, &row)) {
+        reply_problem(&request->reply, MHD_HTTP_UNPROCESSABLE_CONTENT, "event_id", request->raw,
+                      NULL, "this is not the id of an event");
+        return HANDLED;
+    }
+    feed_reader_open(&source.reader, feed, row);
+    events_subscribe(request->service->events, request, &source);
     return HANDLED;
 }

@@ -1,0 +1,28 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* What a reader of events reads: the story of one job, or the feed of all. */
+#ifndef TALUS_EVENT_SOURCE_H
+#define TALUS_EVENT_SOURCE_H
+
+#include "event_stream.h"
+#include "feed.h"
+
+/* Owns what it reads from; `of_all` tells which. */
+struct event_source {
+    bool of_all;
+    struct event_stream stream;
+    struct feed_reader reader;
+};
+
+/* Produced and not taken yet. */
+struct text *event_source_out(struct event_source *source);
+/* Appends what is new. */
+void event_source_fill(struct event_source *source);
+/* Leaves out what waits, and says so by a `gap`. */
+void event_source_skip(struct event_source *source);
+/* Bytes that wait. */
+int64_t event_source_backlog(struct event_source *source);
+/* Whether nothing follows. */
+bool event_source_done(const struct event_source *source);
+void event_source_close(struct event_source *source);
+
+#endif
