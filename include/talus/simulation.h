@@ -166,7 +166,12 @@ struct talus_estimate {
     uint64_t active_cell_count;
     double critical_time_step; /* [s] at t = 0, with the method's limit */
     double time_step;          /* [s] that the run would start with */
-    uint64_t step_count;
+    uint64_t step_count;       /* expected */
+    /* Automatic steps follow the speeds that the scene reaches: if nothing moves, and if the
+     * fastest particle has all energy at hand all the time. */
+    uint64_t step_count_low, step_count_high;
+    double crossing_share; /* [-] of the particles of the fastest body that change cells in a step
+                            */
     uint64_t memory_bytes;
     uint64_t bytes_per_particle;
     int useful_threads; /* as many as pay, on a machine that has them */

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Outputs finer than the eye, the time step or the disk. */
 #include "scene/scene_advice.h"
-#include "scene/scene_cost.h"
+#include "scene/scene_output_size.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -37,8 +37,7 @@ static void advise_double(struct scene_advice *advice, double bytes)
 {
     struct talus_scene single = *advice->scene;
     single.output.frame_double = false;
-    const double particles = (double)advice->estimate->particle_count;
-    const double factor = bytes / scene_frame_bytes(&single, particles);
+    const double factor = bytes / scene_output_size(&single, advice->estimate).frame_bytes;
     char detail[160], saves[96];
     (void)snprintf(detail, sizeof detail,
                    "frames of %.2g GB in double precision: pictures need six digits at most",
@@ -66,7 +65,7 @@ void scene_advise_frames(struct scene_advice *advice)
     if (advice->estimate == NULL)
         return;
     const double count = every > 0.0 ? scene->duration / every + 1.0 : 2.0;
-    const double bytes = scene_frame_bytes(scene, (double)advice->estimate->particle_count);
+    const double bytes = scene_output_size(scene, advice->estimate).frame_bytes;
     if (count > most) {
         (void)snprintf(detail, sizeof detail, "%.0f frames are more than anyone looks at", count);
         advise_frames(advice, "many_frames", detail, scene->duration / enough);
@@ -84,12 +83,13 @@ void scene_advise_history(struct scene_advice *advice)
 {
     const struct talus_scene *scene = advice->scene;
     const double few = 1000.0; /* rows that cost nothing */
-    const double every = scene->output.history_every, bytes = scene_history_bytes(scene);
+    const double every = scene->output.history_every;
     double larger = every;
     char detail[160], change[96], saves[96];
     if (advice->estimate == NULL || (double)advice->estimate->step_count < few)
         return;
     const double step = advice->estimate->time_step;
+    const double bytes = scene_output_size(scene, advice->estimate).history_bytes;
     if (every < step) {
         (void)snprintf(detail, sizeof detail,
                        "samples every %.3g s are closer than the time step of %.3g s", every, step);

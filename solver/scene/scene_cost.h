@@ -1,13 +1,38 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Bytes that a run writes: for its forecast, and for advice on its output. */
+/* Processor and wall time of a run by a table of rates (cost_rates.def), measured once on one
+ * machine; scene_calibration.h corrects it by what this machine has been seen to take. */
 #ifndef TALUS_SCENE_COST_H
 #define TALUS_SCENE_COST_H
 
-#include "talus/scene.h"
+#include "scene/scene_output_size.h"
 
-/* Of all frames together, without compression. */
-double scene_frame_bytes(const struct talus_scene *scene, double particles);
-/* Of all rows of the history, in the files that hold them. */
-double scene_history_bytes(const struct talus_scene *scene);
+/* Processor time is fixed + steps x step + particle steps x particle_step, all threads together. */
+struct scene_cost {
+    double fixed;         /* [s]: start, frames, rows, tables */
+    double step;          /* [s] */
+    double particle_step; /* [s] */
+    double threads;       /* that the steps use */
+    double background;    /* [s] part of `fixed` that goes on beside the steps */
+};
+
+struct scene_cost scene_cost_make(const struct talus_scene *scene,
+                                  const struct talus_estimate *estimate,
+                                  const struct scene_output_size *output, int threads);
+/* Of the whole run [s]. */
+double scene_cost_cpu(const struct scene_cost *cost, double steps, double particle_steps);
+/* The same by the clock, where nobody else wants a core. */
+double scene_cost_wall(const struct scene_cost *cost, double steps, double particle_steps);
+
+/* What a scene is called where costs are learned, from the very method to all runs of a processor:
+ * the same name, the same cost but for what the rates know. */
+enum { COST_LEVEL_COUNT = 3, COST_KEY_SIZE = 200 };
+struct scene_cost_keys {
+    char level[COST_LEVEL_COUNT][COST_KEY_SIZE]; /* the most special one first */
+};
+void scene_cost_keys_make(const struct talus_scene *scene, int threads,
+                          struct scene_cost_keys *keys);
+
+/* A line of cost_rates.def by kind and name, or that kind's DEFAULT; false if it is the latter. */
+bool scene_cost_rate_known(const char *kind, const char *name);
 
 #endif

@@ -1,125 +1,18 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* What a run would cost: the solver's own estimate, bytes on disk, and wall seconds from measured
- * rates. */
-#include "scene/scene_component.h"
-#include "scene/scene_cost.h"
+/* What a run would cost: the solver's own estimate, bytes on disk, and wall seconds by measured
+ * rates and what this machine has shown. */
+#include "scene/scene_calibration.h"
 #include "scene/scene_json.h"
 
-#include "materials/material.h"
 #include "seeding/seeding.h"
-#include "talus/simulation.h"
 
 #include <math.h>
 
-/* Particle-steps per second on one core, by number of axes: {fluids and elastic solids, plastic
- * solids}. Processor time measured on a Zen 4 core with the default stress update and cell-based
- * anti-locking: dam break in plane strain 15e6, sand column (Drucker-Prager, Matsuoka-Nakai) 6.9e6,
- * column impact in 3D (capped Drucker-Prager, 73,728 particles) 3.1e6. Other machines and scenes
- * lie within the factor of three of the interval. */
-static const double rates[3][2] = {
-    {12e6, 8e6},
-    {12e6, 6.5e6},
-    {5e6, 3e6},
-};
-/* Of single over double precision: 1.6 to 2.2 over eight cases of talus-benchmark, compact bodies
- * of 8,000 and 500,000 particles; less in flows, whose wider blocks are filled less. */
-static const double single_gain = 1.8;
-static const double rate_uncertainty = 3.0;
-static const double step_overhead = 5e-6;   /* [s] of a step without particles, per thread */
-static const double frame_byte_rate = 50e6; /* [bytes/s] written, compressed and synchronised */
-static const double start_seconds = 0.1;
 /* Captured, waiting and being written, at most (worker/background_writer.h). */
 static const double frames_in_flight = 4.0;
-static const double process_bytes = 20e6; /* of the worker without a simulation */
-
-static double plastic_share(const struct talus_scene *scene)
-{
-    double plastic = 0.0;
-    for (size_t index = 0; index < scene->body_count; index++) {
-        size_t material = scene->bodies[index].material_index;
-        if (material_table[scene->materials[material].model_index]->plastic)
-            plastic = 1.0;
-    }
-    return plastic;
-}
-
-static double frame_count(const struct talus_scene *scene)
-{
-    double every = scene->output.frames_every;
-    return every > 0.0 ? ceil(scene->duration / every - 1e-9) + 1.0 : 2.0;
-}
-
-/* Numbers per particle in a frame, its position included. */
-static double frame_components(const struct talus_scene *scene)
-{
-    double components = 3.0;
-    for (size_t field = 0; field < TALUS_FIELD_COUNT; field++) {
-        if ((scene->output.frame_fields & (1u << field)) != 0)
-            components += (double)scene_field_components(field);
-    }
-    return components;
-}
-
-double scene_frame_bytes(const struct talus_scene *scene, double particles)
-{
-    const double topology = 8.0 + 8.0 + 1.0; /* connectivity, offset, cell type of a vertex */
-    const double header = 20000.0;           /* of a file with its datasets and attributes */
-    double number = scene->output.frame_double ? 8.0 : 4.0;
-    double once = header + particles * (topology + number * frame_components(scene));
-    return frame_count(scene) * once * (scene->output.vtu ? 2.0 : 1.0);
-}
-
-/* Columns of a history row: time, energies, probes, reactions of boundaries and their faces. */
-static double column_count(const struct talus_scene *scene)
-{
-    double columns = 1.0 + TALUS_ENERGY_PART_COUNT;
-    for (size_t index = 0; index < scene->probe_count; index++)
-        columns += scene->probes[index].component < 0 ? (double)scene->axis_count : 1.0;
-    for (size_t index = 0; index < scene->boundary_count; index++) {
-        const struct talus_boundary *boundary = &scene->boundaries[index];
-        double records = boundary->face_count > 1 ? 1.0 + (double)boundary->face_count : 1.0;
-        double moments = scene->axis_count == 3 ? 3.0 : 1.0;
-        columns += records * (2.0 * (double)scene->axis_count + moments + 1.0);
-    }
-    return columns;
-}
-
-double scene_history_bytes(const struct talus_scene *scene)
-{
-    const double copies = 8.0 + 8.0 + 18.0; /* history.bin, results.h5, a number as text */
-    double rows = scene->duration / scene->output.history_every + 2.0;
-    return rows * column_count(scene) * copies;
-}
-
-/* Time of a step over that with cell-based volumetric anti-locking: talus-benchmark, j2 in 3D with
- * 8 particles per cell. Over nodes the passes over particles fall into more parts. */
-static double fit_cost(const struct talus_scene *scene)
-{
-    const double cell_full = 1.1, node_volumetric = 1.8, node_full = 4.0;
-    const bool whole = scene->solver.anti_locking_field != TALUS_FIT_VOLUMETRIC;
-    switch (scene->solver.anti_locking) {
-    case TALUS_CONTROL_NODE:
-        return whole ? node_full : node_volumetric;
-    case TALUS_CONTROL_HYBRID:
-        return node_volumetric * (whole ? cell_full : 1.0);
-    default:
-        return whole ? cell_full : 1.0;
-    }
-}
-
-static double wall_seconds(const struct talus_scene *scene, const struct talus_estimate *estimate,
-                           int threads, double written)
-{
-    double share = plastic_share(scene);
-    const double *rated = rates[scene->axis_count - 1];
-    double rate = rated[0] * (1.0 - share) + rated[1] * share;
-    if (scene->solver.precision == TALUS_PRECISION_SINGLE)
-        rate *= single_gain;
-    rate /= fit_cost(scene);
-    double useful = fmax(1.0, fmin(threads, estimate->useful_threads));
-    double per_step = (double)estimate->particle_count / (rate * useful) + step_overhead * useful;
-    return start_seconds + (double)estimate->step_count * per_step + written / frame_byte_rate;
-}
+static const double process_bytes = 22e6; /* of the worker without a simulation */
+/* Peaks of memory lie within that of the estimate, down and up (docs/performance.md). */
+static const double memory_low = 0.7, memory_high = 1.4;
 
 static json_t *whole(double value)
 {
@@ -142,29 +35,114 @@ static json_t *describe_bodies(const struct talus_scene *scene)
     return list;
 }
 
-json_t *scene_forecast(const struct talus_scene *scene, int threads, struct talus_error *error)
+static double memory_bytes(const struct talus_scene *scene, const struct talus_estimate *estimate,
+                           const struct scene_output_size *output)
+{
+    double frame = sizeof(double) * output->frame_numbers * (double)estimate->particle_count;
+    double rows = sizeof(double) * output->row_count * output->column_count;
+    double copies = fmin(frames_in_flight, output->frame_count) * frame +
+                    (scene->output.checkpoint_every > 0.0 ? output->checkpoint_bytes : 0.0);
+    return (double)estimate->memory_bytes + process_bytes + copies + 2.0 * rows;
+}
+
+static json_t *interval_json(double low, double expected, double high)
+{
+    return json_pack("{s:o, s:o, s:o}", "low", whole(low), "expected", whole(expected), "high",
+                     whole(high));
+}
+
+/* Steps and particle steps of a run. */
+struct amount {
+    double steps, particle_steps;
+};
+
+static struct amount amount_of(const struct talus_estimate *estimate, uint64_t steps)
+{
+    return (struct amount){(double)steps, (double)steps * (double)estimate->particle_count};
+}
+
+/* Standard deviation of the logarithm of the wall time that the number of steps adds. */
+static double step_spread(const struct scene_cost *cost, const struct talus_estimate *estimate)
+{
+    const struct amount low = amount_of(estimate, estimate->step_count_low);
+    const struct amount high = amount_of(estimate, estimate->step_count_high);
+    const double interval = 4.0; /* standard deviations from low to high */
+    return log(scene_cost_wall(cost, high.steps, high.particle_steps) /
+               scene_cost_wall(cost, low.steps, low.particle_steps)) /
+           interval;
+}
+
+/* What whoever keeps the calibration needs to learn from the finished run: its names, processor
+ * time as a sum over its metrics, and wall time over that on an idle machine. */
+static json_t *learn_json(const struct scene_cost *cost, const struct scene_cost_keys *keys,
+                          struct amount amount)
+{
+    json_t *names = json_array();
+    for (size_t level = 0; level < COST_LEVEL_COUNT; level++)
+        (void)json_array_append_new(names, json_string(keys->level[level]));
+    double wall = scene_cost_wall(cost, amount.steps, amount.particle_steps);
+    double cpu = scene_cost_cpu(cost, amount.steps, amount.particle_steps);
+    return json_pack("{s:o, s:{s:f, s:f, s:f}, s:s, s:f}", "names", names, "cpu_seconds", "fixed",
+                     cost->fixed, "steps", cost->step, "particle_steps", cost->particle_step,
+                     "wall_name", scene_calibration_wall, "wall_over_cpu", wall / cpu);
+}
+
+/* Adds wall time, processor time and what can be learned from the run. */
+static int add_time(json_t *forecast, const struct talus_scene *scene,
+                    const struct talus_estimate *estimate, const struct scene_output_size *output,
+                    int threads, const json_t *calibration)
+{
+    struct scene_cost_keys keys;
+    const struct scene_cost cost = scene_cost_make(scene, estimate, output, threads);
+    const struct amount amount = amount_of(estimate, estimate->step_count);
+    const double wall = scene_cost_wall(&cost, amount.steps, amount.particle_steps);
+    const double cpu = scene_cost_cpu(&cost, amount.steps, amount.particle_steps);
+    scene_cost_keys_make(scene, (int)cost.threads, &keys);
+    const struct calibration_belief belief = scene_calibration_cost(calibration, &keys);
+    const struct calibration_interval interval = scene_calibration_interval(
+        wall, scene_calibration_join(belief, scene_calibration_wait(calibration, cost.threads),
+                                     step_spread(&cost, estimate)));
+    return json_object_set_new(forecast, "wall_seconds",
+                               json_pack("{s:f, s:f, s:f}", "low", interval.low, "expected",
+                                         interval.expected, "high", interval.high)) != 0 ||
+           json_object_set_new(forecast, "cpu_seconds", json_real(cpu * exp(belief.mean))) != 0 ||
+           json_object_set_new(forecast, "learn", learn_json(&cost, &keys, amount)) != 0;
+}
+
+static int add_intervals(json_t *forecast, const struct talus_estimate *estimate,
+                         const struct scene_output_size *output, double memory)
+{
+    return json_object_set_new(
+        forecast, "intervals",
+        json_pack("{s:o, s:o, s:o}", "steps",
+                  interval_json((double)estimate->step_count_low, (double)estimate->step_count,
+                                (double)estimate->step_count_high),
+                  "memory_bytes", interval_json(memory_low * memory, memory, memory_high * memory),
+                  "disk_bytes", interval_json(output->low, output->expected, output->high)));
+}
+
+json_t *scene_forecast(const struct talus_scene *scene, int threads, const json_t *calibration,
+                       struct talus_error *error)
 {
     struct talus_estimate estimate;
     if (talus_simulation_estimate(scene, &estimate, error) != TALUS_OK)
         return NULL;
-    double checkpoint = (double)estimate.particle_count * (double)estimate.bytes_per_particle;
-    double written =
-        scene_frame_bytes(scene, (double)estimate.particle_count) + scene_history_bytes(scene);
-    double copies =
-        frames_in_flight * 8.0 * frame_components(scene) * (double)estimate.particle_count +
-        (scene->output.checkpoint_every > 0.0 ? checkpoint : 0.0);
-    double memory = (double)estimate.memory_bytes + process_bytes + copies;
-    double wall = wall_seconds(scene, &estimate, threads, written);
-    json_t *forecast = json_pack(
-        "{s:o, s:o, s:f, s:f, s:o, s:o, s:o, s:o, s:o, s:i, s:{s:f, s:f, s:f}}", "particles",
-        whole((double)estimate.particle_count), "active_cells",
-        whole((double)estimate.active_cell_count), "critical_time_step",
-        estimate.critical_time_step, "time_step", estimate.time_step, "steps",
-        whole((double)estimate.step_count), "memory_bytes", whole(memory), "bytes_per_particle",
-        whole((double)estimate.bytes_per_particle), "disk_bytes", whole(written + checkpoint),
-        "bodies", describe_bodies(scene), "threads", estimate.useful_threads, "wall_seconds", "low",
-        wall / rate_uncertainty, "expected", wall, "high", wall * rate_uncertainty);
-    if (forecast == NULL)
-        (void)talus_error_set(error, TALUS_MEMORY, "memory", "", "out of memory");
-    return forecast;
+    const struct scene_output_size output = scene_output_size(scene, &estimate);
+    const double memory = memory_bytes(scene, &estimate, &output);
+    json_t *forecast =
+        json_pack("{s:o, s:o, s:f, s:f, s:o, s:o, s:o, s:o, s:o, s:i}", "particles",
+                  whole((double)estimate.particle_count), "active_cells",
+                  whole((double)estimate.active_cell_count), "critical_time_step",
+                  estimate.critical_time_step, "time_step", estimate.time_step, "steps",
+                  whole((double)estimate.step_count), "memory_bytes", whole(memory),
+                  "bytes_per_particle", whole((double)estimate.bytes_per_particle), "disk_bytes",
+                  whole(output.high + output.checkpoint_bytes), "bodies", describe_bodies(scene),
+                  "threads", estimate.useful_threads);
+    if (forecast != NULL &&
+        add_time(forecast, scene, &estimate, &output, threads, calibration) == 0 &&
+        add_intervals(forecast, &estimate, &output, memory) == 0)
+        return forecast;
+    json_decref(forecast);
+    (void)talus_error_set(error, TALUS_MEMORY, "memory", "", "out of memory");
+    return NULL;
 }

@@ -38,9 +38,15 @@ TALUS_MUST_CHECK enum talus_status scene_read_file(const char *path, struct talu
                                                    struct scene_issues *warnings);
 
 /* {"particles","active_cells","critical_time_step","time_step","steps","memory_bytes","bytes_per_particle",
- *  "disk_bytes","bodies":[{"name","particles","volume","volume_factor"}],"wall_seconds":{"low","expected","high"}};
+ *  "disk_bytes","bodies":[{"name","particles","volume","volume_factor"}],"threads",
+ *  "wall_seconds":{"low","expected","high"},"cpu_seconds",
+ *  "intervals":{"steps"|"memory_bytes"|"disk_bytes":{"low","expected","high"}},
+ *  "learn":{"names":[],"cpu_seconds":{"fixed","steps","particle_steps"},"wall_name","wall_over_cpu"}};
+ * `disk_bytes` is what the folder does not exceed while the run lasts, its restart point included;
+ * the interval is of the finished run's. `calibration` (or NULL) as in scene_calibration.h.
  * NULL with *error set (over-critical step, ...). */
-json_t *scene_forecast(const struct talus_scene *scene, int threads, struct talus_error *error);
+json_t *scene_forecast(const struct talus_scene *scene, int threads, const json_t *calibration,
+                       struct talus_error *error);
 /* [{"pointer","code","detail","change","saves"}]. */
 json_t *scene_advice(const struct talus_scene *scene);
 /* Every model, shape, boundary, probe, field and parameter with units and bounds. */

@@ -1,31 +1,32 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* The root of a scene: reads the sections in the order in which they need each other. */
 #include "scene/scene_sections.h"
+#include "scene/scene_words.h"
 
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 /* In the order of enum talus_dimension. */
-static const char *const dimension_words[] = {"line",         "plane_strain", "plane_stress",
-                                              "axisymmetric", "solid",        NULL};
+const char *const scene_dimension_words[] = {"line",         "plane_strain", "plane_stress",
+                                             "axisymmetric", "solid",        NULL};
 static const size_t dimension_axes[] = {1, 2, 2, 2, 3};
 
 static void read_dimension(struct scene_reader *reader, const struct scene_path *path,
                            const json_t *given, void *target, json_t *effective)
 {
     struct talus_scene *scene = target;
-    int index = scene_choice_read(reader, path, given, dimension_words, NULL);
+    int index = scene_choice_read(reader, path, given, scene_dimension_words, NULL);
     if (index < 0)
         return;
     scene->dimension = (enum talus_dimension)index;
     scene->axis_count = reader->axis_count = dimension_axes[index];
-    scene_put(reader, effective, path->key, json_string(dimension_words[index]));
+    scene_put(reader, effective, path->key, json_string(scene_dimension_words[index]));
 }
 
 static json_t *dimension_schema(void)
 {
-    return json_pack("{s:o}", "enum", scene_word_list(dimension_words));
+    return json_pack("{s:o}", "enum", scene_word_list(scene_dimension_words));
 }
 
 static void read_title(struct scene_reader *reader, const struct scene_path *path,

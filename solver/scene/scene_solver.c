@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* How the equations are solved. */
 #include "scene/scene_sections.h"
+#include "scene/scene_words.h"
 
 #define PIC_SHARE "share of PIC"
 #define AT(member) offsetof(struct talus_scene, solver.member)
@@ -20,29 +21,29 @@ static const char *const transfer_words[] = {
 #undef TRANSFER
     NULL,
 };
-static const char *const stress_words[] = {"modified_last", "last", "first", NULL};
-static const char *const strain_words[] = {"finite", "small", NULL};
+const char *const scene_stress_words[] = {"modified_last", "last", "first", NULL};
+const char *const scene_strain_words[] = {"finite", "small", NULL};
 static const char *const strain_lacking[] = {"rate", NULL};
-static const char *const control_words[] = {"none", "cell", "node", "hybrid", NULL};
-static const char *const field_words[] = {"volumetric", "full", "full_constant_volume", NULL};
+const char *const scene_control_words[] = {"none", "cell", "node", "hybrid", NULL};
+const char *const scene_fit_words[] = {"volumetric", "full", "full_constant_volume", NULL};
 static const char *const apply_words[] = {"strain_and_stress", "strain", NULL};
 static const char *const averaging_words[] = {"weighted", "unweighted_sums", "unweighted", NULL};
 static const char *const small_mass_words[] = {"none", "cutoff", "redistribute", NULL};
 static const char *const front_words[] = {"start_velocity", "free_flight", NULL};
-static const char *const precision_words[] = {"double", "single", NULL};
+const char *const scene_precision_words[] = {"double", "single", NULL};
 
 static const struct scene_field anti_locking_fields[] = {
     {.key = "control",
      .kind = SCENE_CHOICE,
      .unit = "1",
-     .choices = control_words,
+     .choices = scene_control_words,
      .offset = AT(anti_locking),
      .meaning = "over what strains are averaged: nothing, each cell, the support of each node, or "
                 "nodes for the volumetric and cells for the deviatoric part"},
     {.key = "field",
      .kind = SCENE_CHOICE,
      .unit = "1",
-     .choices = field_words,
+     .choices = scene_fit_words,
      .offset = AT(anti_locking_field),
      .meaning = "what is fitted: the volumetric part by its mean; all components, normal ones by "
                 "lines and shears by their means; the same with a constant volumetric part"},
@@ -241,7 +242,7 @@ const struct scene_field scene_solver_fields[] = {
     {.key = "stress_update",
      .kind = SCENE_CHOICE,
      .unit = "1",
-     .choices = stress_words,
+     .choices = scene_stress_words,
      .offset = AT(stress_update),
      .meaning = "when the stress is updated in a step, and with which velocity"},
     {.key = "theta",
@@ -264,7 +265,7 @@ const struct scene_field scene_solver_fields[] = {
     {.key = "strain",
      .kind = SCENE_CHOICE,
      .unit = "1",
-     .choices = strain_words,
+     .choices = scene_strain_words,
      .lacking = strain_lacking,
      .offset = AT(strain),
      .meaning = "finite (Hencky) or small strain"},
@@ -281,7 +282,7 @@ const struct scene_field scene_solver_fields[] = {
     {.key = "precision",
      .kind = SCENE_CHOICE,
      .unit = "1",
-     .choices = precision_words,
+     .choices = scene_precision_words,
      .offset = AT(precision),
      .meaning = "floating point numbers of particles, nodes and kernels"},
     {.key = "steps", .unsupported = true},

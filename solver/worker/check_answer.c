@@ -11,11 +11,12 @@ json_t *check_answer_error(const char *pointer, const char *code, const char *de
 
 /* The answer for a scene that was read. */
 static json_t *answer_for(const struct talus_scene *scene, json_t *effective,
-                          const struct scene_issues *warnings, int threads)
+                          const struct scene_issues *warnings, int threads,
+                          const json_t *calibration)
 {
     struct talus_error error = {.status = TALUS_OK};
     char hash[65];
-    json_t *forecast = scene_forecast(scene, threads, &error);
+    json_t *forecast = scene_forecast(scene, threads, calibration, &error);
     if (forecast == NULL)
         return check_answer_error(error.pointer, error.code, error.text);
     scene_hash(effective, hash);
@@ -25,11 +26,12 @@ static json_t *answer_for(const struct talus_scene *scene, json_t *effective,
 }
 
 static json_t *finish(enum talus_status status, struct talus_scene *scene, json_t *effective,
-                      struct scene_issues *issues, struct scene_issues *warnings, int threads)
+                      struct scene_issues *issues, struct scene_issues *warnings, int threads,
+                      const json_t *calibration)
 {
     json_t *answer;
     if (status == TALUS_OK)
-        answer = answer_for(scene, effective, warnings, threads);
+        answer = answer_for(scene, effective, warnings, threads, calibration);
     else if (status == TALUS_MEMORY)
         answer = check_answer_error("", "memory", "out of memory");
     else
@@ -41,20 +43,20 @@ static json_t *finish(enum talus_status status, struct talus_scene *scene, json_
     return answer;
 }
 
-json_t *check_answer(const json_t *root, int threads)
+json_t *check_answer(const json_t *root, int threads, const json_t *calibration)
 {
     struct talus_scene scene;
     struct scene_issues issues, warnings;
     json_t *effective;
     enum talus_status status = scene_read(root, &scene, &effective, &issues, &warnings);
-    return finish(status, &scene, effective, &issues, &warnings, threads);
+    return finish(status, &scene, effective, &issues, &warnings, threads, calibration);
 }
 
-json_t *check_answer_file(const char *path, int threads)
+json_t *check_answer_file(const char *path, int threads, const json_t *calibration)
 {
     struct talus_scene scene;
     struct scene_issues issues, warnings;
     json_t *effective;
     enum talus_status status = scene_read_file(path, &scene, &effective, &issues, &warnings);
-    return finish(status, &scene, effective, &issues, &warnings, threads);
+    return finish(status, &scene, effective, &issues, &warnings, threads, calibration);
 }

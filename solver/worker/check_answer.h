@@ -9,11 +9,11 @@
 
 /* {"ok":true,"effective","forecast","advice","warnings","hash","build"} or
  * {"ok":false,"errors":[...]}; new reference, NULL without memory. `threads`: with which the run is
- * forecast. */
-json_t *check_answer(const json_t *scene, int threads);
+ * forecast; `calibration` (or NULL): by what (scene/scene_calibration.h). */
+json_t *check_answer(const json_t *scene, int threads, const json_t *calibration);
 
 /* The same for a file; a text that is not JSON is one error with line and column. */
-json_t *check_answer_file(const char *path, int threads);
+json_t *check_answer_file(const char *path, int threads, const json_t *calibration);
 
 /* {"ok":false,"errors":[{"pointer","code","detail"}]} of a single error. */
 json_t *check_answer_error(const char *pointer, const char *code, const char *detail);

@@ -11,6 +11,7 @@
 
 struct check_options {
     const char *path;
+    const char *calibration; /* file, or NULL */
     int threads;
     bool json;
 };
@@ -26,6 +27,8 @@ static bool parse(int argument_count, char **arguments, struct check_options *op
             if (*end != '\0' || threads < 1 || threads > 4096)
                 return false;
             options->threads = (int)threads;
+        } else if (strcmp(arguments[index], "--calibration") == 0 && index + 1 < argument_count) {
+            options->calibration = arguments[++index];
         } else if (options->path == NULL && arguments[index][0] != '-') {
             options->path = arguments[index];
         } else {
@@ -33,6 +36,18 @@ static bool parse(int argument_count, char **arguments, struct check_options *op
         }
     }
     return options->path != NULL;
+}
+
+/* What a daemon has learned of the machine, as it tells its helpers. */
+static bool read_calibration(const struct check_options *options, json_t **calibration)
+{
+    json_error_t mistake;
+    if (options->calibration == NULL)
+        return true;
+    *calibration = json_load_file(options->calibration, JSON_REJECT_DUPLICATES, &mistake);
+    if (*calibration == NULL)
+        (void)fprintf(stderr, "talus-worker check: %s: %s\n", options->calibration, mistake.text);
+    return *calibration != NULL;
 }
 
 static const char *text_of(const json_t *object, const char *key)
@@ -88,10 +103,16 @@ int command_check(int argument_count, char **arguments)
 {
     struct check_options options = {.path = NULL, .threads = 1, .json = false};
     if (!parse(argument_count, arguments, &options)) {
-        (void)fprintf(stderr, "usage: talus-worker check SCENE.json [--threads N] [--json]\n");
+        (void)fprintf(stderr,
+                      "usage: talus-worker check SCENE.json [--threads N] [--calibration FILE] "
+                      "[--json]\n");
         return PROTOCOL_EXIT_OTHER;
     }
-    json_t *answer = check_answer_file(options.path, options.threads);
+    json_t *calibration = NULL;
+    if (!read_calibration(&options, &calibration))
+        return PROTOCOL_EXIT_OTHER;
+    json_t *answer = check_answer_file(options.path, options.threads, calibration);
+    json_decref(calibration);
     if (answer == NULL) {
         (void)fprintf(stderr, "talus-worker check: out of memory\n");
         return PROTOCOL_EXIT_MEMORY;

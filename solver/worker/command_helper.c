@@ -17,7 +17,8 @@ static json_t *answer_check(const json_t *question)
     json_int_t threads = json_integer_value(json_object_get(question, "threads"));
     if (scene == NULL)
         return check_answer_error("", "required", "'scene' is required");
-    return check_answer(scene, threads < 1 || threads > 4096 ? 1 : (int)threads);
+    return check_answer(scene, threads < 1 || threads > 4096 ? 1 : (int)threads,
+                        json_object_get(question, "calibration"));
 }
 
 /* Many scenes in one question, for studies: of what a scene is found to be only what a row of a
@@ -37,7 +38,8 @@ static json_t *answer_check_many(const json_t *question)
     }
     json_array_foreach(scenes, index, scene)
     {
-        json_t *answer = check_answer(scene, threads < 1 || threads > 4096 ? 1 : (int)threads);
+        json_t *answer = check_answer(scene, threads < 1 || threads > 4096 ? 1 : (int)threads,
+                                      json_object_get(question, "calibration"));
         (void)json_object_del(answer, "effective");
         (void)json_object_del(answer, "advice");
         (void)json_object_del(answer, "warnings");

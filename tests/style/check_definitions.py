@@ -33,6 +33,7 @@ DATA_LISTS = {
     "server/sobol_directions.def",
     "solver/base/messages.def",
     "solver/explicit/courant_limits.def",
+    "solver/scene/cost_rates.def",
     "solver/materials/cone_parameters.def",
     "solver/materials/hardening_parameters.def",
     "solver/materials/softening_parameters.def",
