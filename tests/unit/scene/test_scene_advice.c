@@ -257,7 +257,7 @@ static void savings_are_numbers(void **state)
     json_t *scene = fixture_scene(BASE_PLANE);
     struct talus_error error;
     fixture_read(scene, &result);
-    json_t *forecast = scene_forecast(&result.scene, 1, &error);
+    json_t *forecast = scene_forecast(&result.scene, 1, NULL, &error);
     const double automatic = json_number_value(json_object_get(forecast, "time_step"));
     const double factor =
         json_number_value(json_object_get(json_object_get(item, "saving"), "particle_steps"));
