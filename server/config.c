@@ -1,25 +1,14 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 #include "config.h"
 
+#include "config_file.h"
 #include "folder.h"
-#include "suggest.h"
 
 #include <getopt.h>
-#include <jansson.h>
 #include <math.h>
-#include <stddef.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
-
-static const char *const key_names[] = {
-#define CONFIG_TEXT(key, fallback, meaning) #key,
-#define CONFIG_NUMBER(key, fallback, low, high, meaning) #key,
-#include "config.def"
-#undef CONFIG_TEXT
-#undef CONFIG_NUMBER
-    NULL,
-};
 
 static enum talus_status out_of_memory(struct talus_error *error)
 {
@@ -36,13 +25,16 @@ void config_usage(FILE *stream)
     (void)fputs(
         "talusd: takes scenes over HTTP, runs them in workers, serves their results\n\n"
         "  talusd --state DIR [--listen ADDR:PORT or unix:PATH] [--workers N]\n"
-        "         [--worker-program PATH] [--config FILE]\n\n"
+        "         [--tokens FILE] [--worker-program PATH] [--config FILE]\n\n"
         "  --state DIR            where jobs and the database are kept\n"
         "                         (default: $XDG_STATE_HOME/talus)\n"
-        "  --listen ADDR:PORT     a loopback address (default 127.0.0.1:8465; port 0: any)\n"
+        "  --listen ADDR:PORT     default 127.0.0.1:8465; port 0: any; an address that is\n"
+        "                         not loopback needs --tokens\n"
         "  --listen unix:PATH     a Unix socket\n"
         "  --workers N            threads that run at once over all jobs\n"
         "                         (default: the cores)\n"
+        "  --tokens FILE          who may do what: lines NAME:ROLE:SHA256 with the roles read,\n"
+        "                         submit and admin; read again on SIGHUP\n"
         "  --worker-program PATH  talus-worker (default: beside talusd, then in PATH)\n"
         "  --config FILE          a JSON object with any of these keys:\n",
         stream);
@@ -50,9 +42,15 @@ void config_usage(FILE *stream)
     (void)fprintf(stream, "      %-22s %s\n", #key, meaning);
 #define CONFIG_NUMBER(key, fallback, low, high, meaning)                                           \
     (void)fprintf(stream, "      %-22s %s (default %.12g)\n", #key, meaning, (double)(fallback));
+#define CONFIG_FLAG(key, meaning)                                                                  \
+    (void)fprintf(stream, "      %-22s %s (default false)\n", #key, meaning);
+#define CONFIG_LIST(key, meaning)                                                                  \
+    (void)fprintf(stream, "      %-22s %s (default [])\n", #key, meaning);
 #include "config.def"
 #undef CONFIG_TEXT
 #undef CONFIG_NUMBER
+#undef CONFIG_FLAG
+#undef CONFIG_LIST
     (void)fputs("  --help, --version\n", stream);
 }
 
@@ -70,10 +68,15 @@ static enum talus_status arguments_read(struct config *config, int argument_coun
                                         char **file, struct talus_error *error)
 {
     static const struct option options[] = {
-        {"state", required_argument, NULL, 's'},   {"listen", required_argument, NULL, 'l'},
-        {"workers", required_argument, NULL, 'w'}, {"worker-program", required_argument, NULL, 'p'},
-        {"config", required_argument, NULL, 'c'},  {"help", no_argument, NULL, 'h'},
-        {"version", no_argument, NULL, 'v'},       {NULL, 0, NULL, 0},
+        {"state", required_argument, NULL, 's'},
+        {"listen", required_argument, NULL, 'l'},
+        {"workers", required_argument, NULL, 'w'},
+        {"worker-program", required_argument, NULL, 'p'},
+        {"config", required_argument, NULL, 'c'},
+        {"help", no_argument, NULL, 'h'},
+        {"version", no_argument, NULL, 'v'},
+        {"tokens", required_argument, NULL, 't'},
+        {NULL, 0, NULL, 0},
     };
     int option;
     bool good = true;
@@ -90,6 +93,9 @@ static enum talus_status arguments_read(struct config *config, int argument_coun
             break;
         case 'p':
             good = text_replace(&config->worker_program, optarg);
+            break;
+        case 't':
+            good = text_replace(&config->tokens, optarg);
             break;
         case 'c':
             good = text_replace(file, optarg);
@@ -113,83 +119,6 @@ static enum talus_status arguments_read(struct config *config, int argument_coun
     if (!good)
         return out_of_memory(error);
     return optind < argument_count ? usage_error(error, "too many arguments") : TALUS_OK;
-}
-
-/* Where a key of the file goes. */
-struct config_key {
-    const char *name;
-    bool is_text;
-    size_t offset; /* in struct config */
-    double low, high;
-};
-
-static const struct config_key keys[] = {
-#define CONFIG_TEXT(key, fallback, meaning) {#key, true, offsetof(struct config, key), 0, 0},
-#define CONFIG_NUMBER(key, fallback, low, high, meaning)                                           \
-    {#key, false, offsetof(struct config, key), low, high},
-#include "config.def"
-#undef CONFIG_TEXT
-#undef CONFIG_NUMBER
-};
-enum { KEY_COUNT = sizeof keys / sizeof keys[0] };
-
-static enum talus_status number_read(struct config *config, const struct config_key *key,
-                                     const json_t *value, struct talus_error *error)
-{
-    double *member = (double *)((char *)config + key->offset);
-    double number = json_number_value(value);
-    if (!json_is_number(value) || number < key->low || number > key->high)
-        return talus_error_set(error, TALUS_INVALID, "range", "",
-                               "%s: a number from %g to %g is "
-                               "wanted",
-                               key->name, key->low, key->high);
-    if (isnan(*member))
-        *member = number;
-    return TALUS_OK;
-}
-
-/* Takes a key of the file unless the command line gave it. */
-static enum talus_status key_read(struct config *config, const char *name, const json_t *value,
-                                  struct talus_error *error)
-{
-    size_t index = 0;
-    while (index < KEY_COUNT && strcmp(keys[index].name, name) != 0)
-        index++;
-    if (index == KEY_COUNT) {
-        const char *near = suggest(name, key_names);
-        return talus_error_set(error, TALUS_INVALID, "unknown_key", "", "unknown key %s%s%s", name,
-                               near == NULL ? "" : "; did you mean ", near == NULL ? "" : near);
-    }
-    if (!keys[index].is_text)
-        return number_read(config, &keys[index], value, error);
-    char **member = (char **)((char *)config + keys[index].offset);
-    if (!json_is_string(value))
-        return talus_error_set(error, TALUS_INVALID, "type", "", "%s: a string is wanted", name);
-    return *member != NULL || text_replace(member, json_string_value(value)) ? TALUS_OK
-                                                                             : out_of_memory(error);
-}
-
-static enum talus_status file_read(struct config *config, const char *path,
-                                   struct talus_error *error)
-{
-    json_error_t problem;
-    json_t *root = json_load_file(path, JSON_REJECT_DUPLICATES, &problem);
-    if (!json_is_object(root)) {
-        json_decref(root);
-        return talus_error_set(error, TALUS_INVALID, "config", "",
-                               "%s: not a JSON object (line %d, column %d: %s)", path, problem.line,
-                               problem.column, problem.text);
-    }
-    enum talus_status status = TALUS_OK;
-    const char *key;
-    json_t *value;
-    json_object_foreach(root, key, value)
-    {
-        if (status == TALUS_OK)
-            status = key_read(config, key, value, error);
-    }
-    json_decref(root);
-    return status;
 }
 
 static enum talus_status state_find(struct config *config, struct talus_error *error)
@@ -238,9 +167,13 @@ static bool defaults_fill(struct config *config)
 #define CONFIG_NUMBER(key, fallback, low, high, meaning)                                           \
     if (isnan(config->key))                                                                        \
         config->key = (fallback);
+#define CONFIG_FLAG(key, meaning)
+#define CONFIG_LIST(key, meaning)
 #include "config.def"
 #undef CONFIG_TEXT
 #undef CONFIG_NUMBER
+#undef CONFIG_FLAG
+#undef CONFIG_LIST
     if (config->workers < 1) {
         long cores = sysconf(_SC_NPROCESSORS_ONLN);
         config->workers = cores > 0 ? (double)cores : 1;
@@ -255,12 +188,16 @@ enum talus_status config_read(struct config *config, int argument_count, char **
     memset(config, 0, sizeof *config);
 #define CONFIG_TEXT(key, fallback, meaning)
 #define CONFIG_NUMBER(key, fallback, low, high, meaning) config->key = NAN;
+#define CONFIG_FLAG(key, meaning)
+#define CONFIG_LIST(key, meaning)
 #include "config.def"
 #undef CONFIG_TEXT
 #undef CONFIG_NUMBER
+#undef CONFIG_FLAG
+#undef CONFIG_LIST
     enum talus_status status = arguments_read(config, argument_count, arguments, &file, error);
     if (status == TALUS_OK && file != NULL)
-        status = file_read(config, file, error);
+        status = config_file_read(config, file, error);
     if (status == TALUS_OK && !defaults_fill(config))
         status = out_of_memory(error);
     if (status == TALUS_OK && !config->help && !config->version)
@@ -271,12 +208,23 @@ enum talus_status config_read(struct config *config, int argument_count, char **
     return status;
 }
 
+static void list_release(char **texts)
+{
+    for (size_t index = 0; texts != NULL && texts[index] != NULL; index++)
+        free(texts[index]);
+    free(texts);
+}
+
 void config_release(struct config *config)
 {
 #define CONFIG_TEXT(key, fallback, meaning) free(config->key);
 #define CONFIG_NUMBER(key, fallback, low, high, meaning)
+#define CONFIG_FLAG(key, meaning)
+#define CONFIG_LIST(key, meaning) list_release(config->key);
 #include "config.def"
 #undef CONFIG_TEXT
 #undef CONFIG_NUMBER
+#undef CONFIG_FLAG
+#undef CONFIG_LIST
     memset(config, 0, sizeof *config);
 }

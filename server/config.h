@@ -12,9 +12,13 @@
 struct config {
 #define CONFIG_TEXT(key, fallback, meaning) char *key;
 #define CONFIG_NUMBER(key, fallback, low, high, meaning) double key;
+#define CONFIG_FLAG(key, meaning) bool key;
+#define CONFIG_LIST(key, meaning) char **key; /* ends with NULL; NULL: none */
 #include "config.def"
 #undef CONFIG_TEXT
 #undef CONFIG_NUMBER
+#undef CONFIG_FLAG
+#undef CONFIG_LIST
     bool help, version;
 };
 
