@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 #include "events.h"
 
+#include "access.h"
 #include "moment.h"
 #include "service.h"
 #include "waits.h"
@@ -21,10 +22,12 @@ struct subscription {
     struct events *events;
     struct MHD_Connection *connection;
     struct event_source source;
+    struct token_proof proof;
     struct text ready; /* for the HTTP thread */
     size_t sent;       /* bytes of it that are gone */
     double last_sent;  /* when the reader last took something */
     bool suspended, ended, closed;
+    bool revoked; /* the token is not in force any more */
     struct subscription *next;
 };
 
@@ -100,7 +103,8 @@ static void subscription_service(struct subscription *own, double now)
     (void)pthread_mutex_lock(&events->mutex);
     if (out->length > 0)
         text_add(&own->ready, out->data, out->length);
-    if (event_source_done(&own->source) || own->ready.failed || out->failed || events->ending)
+    if (event_source_done(&own->source) || own->ready.failed || out->failed || events->ending ||
+        own->revoked)
         own->ended = true;
     text_release(out);
     if (own->suspended && (own->ready.length > 0 || own->ended) && !own->closed) {
@@ -227,12 +231,14 @@ void events_subscribe(struct events *events, struct request *request,
     own->events = events;
     own->connection = request->connection;
     own->source = *source;
+    own->proof = request->proof;
     own->last_sent = moment_monotonic();
     /* Also pushes the header fields out. */
     text_add_string(&own->ready, "retry: 1000\n\n");
     reply_stream(&request->reply, response);
     (void)pthread_mutex_lock(&events->mutex);
     own->ended = events->ending;
+    own->revoked = !access_holds(events->service->access, &own->proof);
     own->next = events->first;
     events->first = own;
     events->woken = true;
@@ -243,6 +249,16 @@ void events_subscribe(struct events *events, struct request *request,
 void events_wake(struct events *events)
 {
     (void)pthread_mutex_lock(&events->mutex);
+    events->woken = true;
+    (void)pthread_cond_signal(&events->wake);
+    (void)pthread_mutex_unlock(&events->mutex);
+}
+
+void events_access_recheck(struct events *events)
+{
+    (void)pthread_mutex_lock(&events->mutex);
+    for (struct subscription *own = events->first; own != NULL; own = own->next)
+        own->revoked = !access_holds(events->service->access, &own->proof);
     events->woken = true;
     (void)pthread_cond_signal(&events->wake);
     (void)pthread_mutex_unlock(&events->mutex);

@@ -22,6 +22,8 @@ void events_subscribe(struct events *events, struct request *request,
 struct feed *events_feed(struct events *events);
 /* Looks at the files now. */
 void events_wake(struct events *events);
+/* Ends the streams whose token is not in force any more. */
+void events_access_recheck(struct events *events);
 /* Ends all streams and lets no new one last. */
 void events_end(struct events *events);
 

@@ -1,7 +1,9 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 #include "http.h"
 
+#include "audit.h"
 #include "http_checks.h"
+#include "http_origin.h"
 #include "http_watch.h"
 #include "job_cache.h"
 #include "request.h"
@@ -80,8 +82,11 @@ static enum MHD_Result reply_queue(struct request *request)
                       "out of memory");
     if (reply->response == NULL)
         return MHD_NO;
+    origin_reply(request);
     if (reply->close)
         reply_header(reply, MHD_HTTP_HEADER_CONNECTION, "close");
+    if (reply->response == NULL)
+        return MHD_NO;
     return MHD_queue_response(request->connection, reply->status, reply->response);
 }
 
@@ -90,13 +95,13 @@ static enum MHD_Result request_begin(struct request *request, const char *method
     const union MHD_ConnectionInfo *information =
         MHD_get_connection_info(request->connection, MHD_CONNECTION_INFO_SOCKET_CONTEXT);
     request->begun = true;
-    /* Whoever reaches a loopback address or a Unix socket is trusted. */
-    request->principal.role = ROLE_ADMIN;
     request->watch = information == NULL ? NULL : information->socket_context;
     request->method = strdup(method);
     if (request->method == NULL)
         return MHD_NO;
     http_check(request);
+    if (request->refused)
+        audit_refusal(request->service->audit, request);
     if (request->reply.response != NULL && request->reply.close)
         return reply_queue(request);
     return MHD_YES;
@@ -126,7 +131,7 @@ static enum MHD_Result request_dispatch(struct http_server *server, struct reque
 {
     http_watch_arrived(request->watch);
     request->handed_in = true;
-    if (request->reply.response != NULL)
+    if (request->reply.response != NULL || request->route == NULL)
         return reply_queue(request);
     if (atomic_load(&server->closing)) {
         reply_problem(&request->reply, MHD_HTTP_SERVICE_UNAVAILABLE, "draining", request->raw, NULL,

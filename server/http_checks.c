@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 #include "http_checks.h"
 
+#include "access.h"
+#include "http_origin.h"
 #include "service.h"
 
-#include <arpa/inet.h>
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <strings.h>
@@ -13,7 +13,7 @@ enum { TARGET_BYTES_MAX = 8192, FIELDS_BYTES_MAX = 16384 };
 
 /* What a walk over the header fields finds. */
 struct fields {
-    size_t bytes, host_count, length_count, encoding_count, type_count;
+    size_t bytes, host_count, length_count, encoding_count, type_count, authorization_count;
     const char *host, *length, *encoding;
     bool malformed;
 };
@@ -60,6 +60,8 @@ static enum MHD_Result field_visit(void *context, enum MHD_ValueKind kind, const
         fields->encoding_count++;
     } else if (strcasecmp(name, MHD_HTTP_HEADER_CONTENT_TYPE) == 0) {
         fields->type_count++;
+    } else if (strcasecmp(name, MHD_HTTP_HEADER_AUTHORIZATION) == 0) {
+        fields->authorization_count++;
     }
     return MHD_YES;
 }
@@ -93,47 +95,11 @@ static bool framing_check(struct request *request, const struct fields *fields)
         problem = "exactly one Host is needed";
     else if (fields->type_count > 1)
         problem = "Content-Type is given more than once";
+    else if (fields->authorization_count > 1)
+        problem = "Authorization is given more than once";
     if (problem != NULL)
         refuse(request, MHD_HTTP_BAD_REQUEST, "framing", problem);
     return problem == NULL;
-}
-
-/* Only names of this machine: a page whose name was made to point here (DNS rebinding) carries its
- * own. */
-static bool host_is_loopback(const char *host)
-{
-    char name[128];
-    struct in_addr four;
-    if (strlen(host) >= sizeof name)
-        return false;
-    (void)snprintf(name, sizeof name, "%s", host);
-    char *colon = name[0] == '[' ? strstr(name, "]:") : strchr(name, ':');
-    if (colon != NULL) {
-        colon += name[0] == '[';
-        if (strspn(colon + 1, "0123456789") != strlen(colon + 1) || strlen(colon + 1) > 5 ||
-            strtol(colon + 1, NULL, 10) > 65535)
-            return false;
-        *colon = '\0';
-    }
-    if (strcasecmp(name, "localhost") == 0 || strcmp(name, "[::1]") == 0)
-        return true;
-    return inet_pton(AF_INET, name, &four) == 1 && (ntohl(four.s_addr) >> 24) == 127;
-}
-
-static bool origin_check(struct request *request, const char *host)
-{
-    const char *origin = request_header(request, MHD_HTTP_HEADER_ORIGIN);
-    if (!host_is_loopback(host)) {
-        refuse(request, MHD_HTTP_FORBIDDEN, "host", "Host does not name this machine");
-        return false;
-    }
-    if (origin == NULL)
-        return true;
-    const char *name = strncmp(origin, "http://", 7) == 0 ? origin + 7 : "";
-    if (strcasecmp(name, host) == 0)
-        return true;
-    refuse(request, MHD_HTTP_FORBIDDEN, "origin", "pages of another origin may not call here");
-    return false;
 }
 
 static bool type_is_json(const char *type)
@@ -200,7 +166,10 @@ void http_check(struct request *request)
         refuse(request, MHD_HTTP_BAD_REQUEST, "target", problem);
         return;
     }
+    if (origin_preflight(request))
+        return;
     request_route(request);
-    if (request->reply.response == NULL && request_query_check(request))
+    if (access_check(request) && request->reply.response == NULL && request->route != NULL &&
+        request_query_check(request))
         body_check(request, &fields);
 }

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
+#include "access.h"
 #include "address.h"
 #include "config.h"
 #include "service.h"
@@ -31,13 +32,26 @@ static void descriptors_raise(const struct config *config)
                       (unsigned long long)limit.rlim_max, config->connections);
 }
 
+/* Answers signals until one asks to stop. */
+static void signals_serve(struct service *service, const sigset_t *signals)
+{
+    siginfo_t information;
+    for (;;) {
+        int number = sigwaitinfo(signals, &information);
+        if (number == SIGHUP)
+            service_reload(service, information.si_uid);
+        else if (number > 0)
+            return;
+    }
+}
+
 /* Serves until a signal asks to stop. */
 static enum talus_status serve(const struct config *config, struct talus_error *error)
 {
     char address[ADDRESS_TEXT_SIZE];
     struct service service;
     sigset_t signals;
-    int listener = -1, signal_number = 0;
+    int listener = -1;
     (void)sigemptyset(&signals);
     (void)sigaddset(&signals, SIGTERM);
     (void)sigaddset(&signals, SIGINT);
@@ -52,9 +66,10 @@ static enum talus_status serve(const struct config *config, struct talus_error *
         return status;
     (void)printf("talusd: listening on %s, state in %s\n", address, service.state);
     (void)fflush(stdout);
-    do {
-        (void)sigwait(&signals, &signal_number);
-    } while (signal_number == SIGHUP);
+    if (!access_is_local(service.access))
+        (void)fprintf(stderr, "talusd: warning: plain HTTP beyond this machine shows tokens and "
+                              "results to the network; put a proxy with TLS before it\n");
+    signals_serve(&service, &signals);
     service_stop(&service);
     if (strncmp(address, "unix:", 5) == 0)
         (void)unlink(address + 5);

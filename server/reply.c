@@ -107,7 +107,8 @@ static const char *problem_title(unsigned int status)
         const char *title;
     } titles[] = {
         {400, "The request is malformed"},
-        {403, "The request is not allowed from there"},
+        {401, "A valid token is needed"},
+        {403, "The request is not allowed"},
         {404, "There is no such thing"},
         {405, "The method does not apply here"},
         {406, "No acceptable form"},

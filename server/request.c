@@ -72,22 +72,31 @@ static bool route_matches(const struct route *route, struct request *request)
 const struct json_field operation_job_path[] = {{.key = "id", .meaning = "of the job"},
                                                 OPERATION_END};
 
+void request_methods(struct request *request, char methods[REQUEST_METHODS_SIZE])
+{
+    methods[0] = '\0';
+    for (size_t index = 0; index < request_route_count; index++) {
+        const struct route *route = &request_routes[index];
+        size_t length = strlen(methods);
+        if (route_matches(route, request))
+            (void)snprintf(methods + length, REQUEST_METHODS_SIZE - length, "%s%s%s",
+                           length == 0 ? "" : ", ", route->method,
+                           strcmp(route->method, "GET") == 0 ? ", HEAD" : "");
+    }
+}
+
 void request_route(struct request *request)
 {
-    char allow[64] = "";
+    char allow[REQUEST_METHODS_SIZE];
     const char *method = strcmp(request->method, "HEAD") == 0 ? "GET" : request->method;
     for (size_t index = 0; index < request_route_count; index++) {
         const struct route *route = &request_routes[index];
-        if (!route_matches(route, request))
-            continue;
-        if (strcmp(route->method, method) == 0) {
+        if (strcmp(route->method, method) == 0 && route_matches(route, request)) {
             request->route = route;
             return;
         }
-        size_t length = strlen(allow);
-        (void)snprintf(allow + length, sizeof allow - length, "%s%s%s", length == 0 ? "" : ", ",
-                       route->method, strcmp(route->method, "GET") == 0 ? ", HEAD" : "");
     }
+    request_methods(request, allow);
     if (allow[0] == '\0') {
         reply_problem(&request->reply, MHD_HTTP_NOT_FOUND, "not_found", request->raw, NULL,
                       "there is nothing at this path");

@@ -25,6 +25,8 @@ enum handled {
     HANDLED_PARKED, /* a wait holds the request and will hand it in again */
 };
 
+enum { REQUEST_METHODS_SIZE = 64 };
+
 struct request;
 
 struct route {
@@ -46,6 +48,7 @@ struct request {
     char *method; /* "HEAD" has the route of "GET" */
     struct target target;
     struct principal principal;
+    struct token_proof proof;
     const struct route *route;
     const char *segment; /* what the first "*" stands for */
     char rest[1024];     /* what the second "*" or "**" stands for */
@@ -54,6 +57,7 @@ struct request {
     struct reply reply;
     struct helper *helper; /* HELPER lane: the process to ask */
     bool begun;            /* headers are checked */
+    bool refused;          /* because of who asks */
     bool handed_in;        /* was given to a lane */
     double deadline;       /* of a wait (monotonic), 0: not waiting yet */
     bool expired;          /* the wait is over, answer */
@@ -72,6 +76,8 @@ extern const size_t request_route_count;
 
 /* Finds the route and fills segment and rest, or makes the reply (404, 405 with Allow). */
 void request_route(struct request *request);
+/* The methods that the path takes, as Allow lists them; "" if there is no such path. */
+void request_methods(struct request *request, char methods[REQUEST_METHODS_SIZE]);
 const char *request_header(const struct request *request, const char *name);
 /* Refuses query parameters that the operation of the route does not list, or whose values it does
  * not allow. Every request goes through it before its handler. False: the reply is made. */

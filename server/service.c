@@ -1,10 +1,13 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 #include "service.h"
 
+#include "access.h"
+#include "audit.h"
 #include "events.h"
 #include "file_checksums.h"
 #include "folder.h"
 #include "http.h"
+#include "http_origin.h"
 #include "job_cache.h"
 #include "jobs.h"
 #include "moment.h"
@@ -70,7 +73,10 @@ static enum talus_status parts_create(struct service *service, struct talus_erro
 {
     char path[4200];
     (void)snprintf(path, sizeof path, "%s/talus.sqlite", service->state);
-    enum talus_status status = identifier_source_init(&service->identifiers, error);
+    enum talus_status status =
+        audit_create(&service->audit, service->state, service->config, error);
+    if (status == TALUS_OK)
+        status = identifier_source_init(&service->identifiers, error);
     if (status == TALUS_OK)
         status = file_checksums_create(&service->checksums, error);
     if (status == TALUS_OK)
@@ -105,6 +111,8 @@ static void parts_destroy(struct service *service)
     (void)pthread_mutex_destroy(&service->journal);
     if (service->lock >= 0)
         (void)close(service->lock);
+    audit_destroy(service->audit);
+    access_destroy(service->access);
     free(service->state);
 }
 
@@ -116,7 +124,11 @@ enum talus_status service_start(struct service *service, const struct config *co
     service->lock = -1;
     (void)pthread_mutex_init(&service->journal, NULL);
     (void)pthread_mutex_init(&service->schema_mutex, NULL);
-    enum talus_status status = boot_read(service->boot, error);
+    enum talus_status status = origin_config_check(config, error);
+    if (status == TALUS_OK)
+        status = access_create(&service->access, config, listener, error);
+    if (status == TALUS_OK)
+        status = boot_read(service->boot, error);
     if (status == TALUS_OK)
         status = state_take(service, error);
     if (status == TALUS_OK)
@@ -130,6 +142,21 @@ enum talus_status service_start(struct service *service, const struct config *co
     if (status != TALUS_OK)
         parts_destroy(service);
     return status;
+}
+
+void service_reload(struct service *service, uid_t user)
+{
+    struct talus_error error = {0};
+    bool good = access_reload(service->access, &error) == TALUS_OK;
+    size_t count = access_token_count(service->access);
+    if (good)
+        events_access_recheck(service->events);
+    audit_reload(service->audit, user, good, count);
+    if (good)
+        (void)fprintf(stderr, "talusd: %zu tokens are in force\n", count);
+    else
+        (void)fprintf(stderr, "talusd: %s; the %zu tokens of before stay in force\n", error.text,
+                      count);
 }
 
 /* Waits until no request is being answered, between two durations. */

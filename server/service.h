@@ -12,7 +12,10 @@
 #include <pthread.h>
 #include <stdatomic.h>
 #include <stdbool.h>
+#include <sys/types.h>
 
+struct access;
+struct audit;
 struct lanes;
 struct waits;
 struct events;
@@ -27,6 +30,8 @@ struct service {
     char boot[64];        /* identifies the boot of the machine */
     int lock;             /* descriptor that holds the state folder's lock */
     atomic_bool draining; /* stops taking work */
+    struct access *access;
+    struct audit *audit;
     struct identifier_source identifiers;
     pthread_mutex_t journal; /* one state line is written at a time */
     pthread_mutex_t schema_mutex;
@@ -47,6 +52,8 @@ struct service {
 TALUS_MUST_CHECK enum talus_status service_start(struct service *service,
                                                  const struct config *config, int listener,
                                                  struct talus_error *error);
+/* Reads the tokens again; streams of tokens that are gone end. `user` sent the signal. */
+void service_reload(struct service *service, uid_t user);
 /* Refuses new work, lets requests under way end, leaves workers running, and stops. */
 void service_stop(struct service *service);
 

@@ -12,7 +12,7 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-enum { TOKEN_DIGEST_SIZE = 32, TOKEN_LENGTH_MAX = 512 };
+enum { TOKEN_LENGTH_MAX = 512 };
 
 struct token {
     struct principal principal;

@@ -1,7 +1,10 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 #include "work_lanes.h"
 
+#include "access.h"
+#include "audit.h"
 #include "helper.h"
+#include "service.h"
 
 #include <pthread.h>
 #include <stdlib.h>
@@ -34,6 +37,18 @@ static size_t queue_index(enum lane lane)
     return lane == LANE_HELPER ? 1 : 0;
 }
 
+/* Handles a request and lets its reply go out, unless it waits for something. */
+static void request_answer(struct request *request)
+{
+    struct MHD_Connection *connection = request->connection;
+    bool change = access_is_change(request);
+    if (access_owner_check(request) && request->route->handle(request) == HANDLED_PARKED)
+        return; /* and may have been answered by now */
+    if (change)
+        audit_request(request->service->audit, request);
+    MHD_resume_connection(connection);
+}
+
 static void *lane_main(void *argument)
 {
     struct lane_thread *own = argument;
@@ -53,9 +68,7 @@ static void *lane_main(void *argument)
         (void)pthread_mutex_unlock(&lanes->mutex);
         request->next = NULL;
         request->helper = own->lane == LANE_HELPER ? &own->helper : NULL;
-        struct MHD_Connection *connection = request->connection;
-        if (request->route->handle(request) == HANDLED)
-            MHD_resume_connection(connection);
+        request_answer(request);
         (void)pthread_mutex_lock(&lanes->mutex);
         lanes->busy_count--;
     }

@@ -1,5 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Version, liveness, readiness, and the JSON Schema of scenes. */
+#include "access.h"
+#include "audit.h"
 #include "helper.h"
 #include "openapi.h"
 #include "request.h"
@@ -47,6 +49,18 @@ const struct operation operation_readyz = {
     .responses = status_response,
 };
 
+/* What an operator should look at while work goes on; for anyone to read. */
+static json_t *warnings_json(struct service *service)
+{
+    json_t *warnings = json_array();
+    if (access_is_stale(service->access))
+        (void)json_array_append_new(warnings, json_string("the token file has mistakes: the tokens "
+                                                          "of before are in force"));
+    if (audit_lost_count(service->audit) > 0)
+        (void)json_array_append_new(warnings, json_string("the audit log lacks lines"));
+    return warnings;
+}
+
 enum handled handle_readyz(struct request *request)
 {
     struct service *service = request->service;
@@ -60,7 +74,8 @@ enum handled handle_readyz(struct request *request)
              (double)disk.f_bavail * (double)disk.f_frsize < service->config->disk_reserve_bytes)
         reason = "the disk is nearly full";
     if (reason == NULL)
-        reply_json(&request->reply, MHD_HTTP_OK, json_pack("{s:s}", "status", "ready"));
+        reply_json(&request->reply, MHD_HTTP_OK,
+                   json_pack("{s:s, s:o}", "status", "ready", "warnings", warnings_json(service)));
     else
         reply_problem(&request->reply, MHD_HTTP_SERVICE_UNAVAILABLE, "not_ready", request->raw,
                       NULL, "%s", reason);
