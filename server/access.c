@@ -3,6 +3,7 @@
 
 #include "address.h"
 #include "service.h"
+#include "studies/study_store.h"
 #include "tokens.h"
 
 #include <stdio.h>
@@ -179,12 +180,24 @@ static enum talus_status job_owner(struct request *request, char *owner, size_t 
     return status;
 }
 
+static enum talus_status study_owner(struct request *request, char *owner, size_t size,
+                                     struct talus_error *error)
+{
+    struct study study = {0};
+    enum talus_status status =
+        study_store_read(request->service->store, request->segment, false, &study, error);
+    if (status == TALUS_OK)
+        (void)snprintf(owner, size, "%s", study.owner == NULL ? "" : study.owner);
+    study_release(&study);
+    return status;
+}
+
 /* How to find out whose a thing is; things of other paths belong to nobody. */
 static const struct {
     const char *path; /* behind v1/ */
     enum talus_status (*read)(struct request *request, char *owner, size_t size,
                               struct talus_error *error);
-} owners[] = {{"jobs", job_owner}};
+} owners[] = {{"jobs", job_owner}, {"studies", study_owner}};
 
 bool access_owner_check(struct request *request)
 {

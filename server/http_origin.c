@@ -5,6 +5,7 @@
 #include "service.h"
 
 #include <arpa/inet.h>
+#include <ctype.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -32,6 +33,17 @@ static bool is_host(const char *text)
     (void)snprintf(inner, sizeof inner, "%s", text + 1);
     inner[length - 2] = '\0';
     return text[length - 1] == ']' && inet_pton(AF_INET6, inner, &six) == 1;
+}
+
+/* A copy in small letters; false if it is too long. */
+static bool host_lower(const char *host, char name[HOST_BYTES_MAX])
+{
+    size_t length = strlen(host);
+    if (length >= HOST_BYTES_MAX)
+        return false;
+    for (size_t index = 0; index <= length; index++)
+        name[index] = (char)tolower((unsigned char)host[index]);
+    return true;
 }
 
 /* Cuts the port off; false if it is none. */
@@ -85,7 +97,7 @@ static bool is_loopback(const char *name)
     struct in_addr four;
     struct in6_addr six;
     size_t length = strlen(name);
-    if (strcasecmp(name, "localhost") == 0)
+    if (strcmp(name, "localhost") == 0)
         return true;
     if (name[0] == '[' && length - 2 < sizeof inner) {
         (void)snprintf(inner, sizeof inner, "%.*s", (int)length - 2, name + 1);
@@ -98,7 +110,7 @@ static bool is_loopback(const char *name)
 static bool is_listed(const char *name, char *const *list)
 {
     for (; list != NULL && *list != NULL; list++) {
-        if (strcasecmp(name, *list) == 0)
+        if (strcmp(name, *list) == 0)
             return true;
     }
     return false;
@@ -131,12 +143,10 @@ bool origin_check(struct request *request, const char *host)
 {
     const struct config *config = request->service->config;
     char name[HOST_BYTES_MAX];
-    bool fits = strlen(host) < sizeof name;
-    (void)snprintf(name, sizeof name, "%s", host);
-    bool good = fits && port_cut(name);
+    bool good = host_lower(host, name) && port_cut(name);
     bool loopback = good && is_loopback(name);
     bool listed = good && is_listed(name, config->hosts);
-    bool any = good && name[0] != '\0' && config->hosts == NULL &&
+    bool any = good && is_host(name) && config->hosts == NULL &&
                !access_is_local(request->service->access);
     if (!loopback && !listed && !any)
         return refuse(request, "host", "Host does not name this machine");

@@ -20,6 +20,7 @@ extern const struct json_field schema_problem;
 extern const struct json_field schema_series;
 extern const struct json_field schema_series_list;
 extern const struct json_field schema_status;
+extern const struct json_field schema_readiness;
 extern const struct json_field schema_submission;
 extern const struct json_field schema_version;
 

@@ -68,6 +68,15 @@ static const struct json_field status_members[] = {MEMBER(TEXT, "status", "in a 
 const struct json_field schema_status = {
     .kind = FIELD_OBJECT, .schema = "Status", .fields = status_members};
 
+static const struct json_field warning_item = {.kind = FIELD_TEXT};
+static const struct json_field readiness_members[] = {
+    MEMBER(TEXT, "status", "in a word"),
+    {.key = "warnings", .kind = FIELD_LIST, .item = &warning_item, .meaning = "to look at soon"},
+    MEMBER_END,
+};
+const struct json_field schema_readiness = {
+    .kind = FIELD_OBJECT, .schema = "Readiness", .fields = readiness_members};
+
 static const struct json_field problem_members[] = {
     MEMBER(TEXT, "type", "urn:talus:problem:CODE"),
     MEMBER(TEXT, "title", "what kind of problem"),

@@ -46,7 +46,11 @@ enum handled handle_healthz(struct request *request)
 const struct operation operation_readyz = {
     .summary =
         "Whether the daemon takes jobs: 503 while it stops, the disk is low, the store fails",
-    .responses = status_response,
+    .responses = (const struct response[]){{.status = 200,
+                                            .type = "application/json",
+                                            .schema = &schema_readiness,
+                                            .meaning = "it does"},
+                                           RESPONSE_END},
 };
 
 /* What an operator should look at while work goes on; for anyone to read. */

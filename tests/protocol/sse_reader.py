@@ -28,7 +28,7 @@ class Event:
 class Stream:
     """GET path as an event stream. Iterating gives events until the server ends the stream."""
 
-    def __init__(self, port, path, last_id=None, receive_buffer=None, timeout=30.0):
+    def __init__(self, port, path, last_id=None, receive_buffer=None, timeout=30.0, token=None):
         self.comments = []
         self.ended = False
         self.socket = socket.socket()
@@ -39,6 +39,8 @@ class Stream:
         lines = [f"GET {path} HTTP/1.1", f"Host: 127.0.0.1:{port}", "Accept: text/event-stream"]
         if last_id is not None:
             lines.append(f"Last-Event-ID: {last_id}")
+        if token is not None:
+            lines.append(f"Authorization: Bearer {token}")
         self.socket.sendall(("\r\n".join(lines) + "\r\n\r\n").encode())
         self.buffer = b""
         self.raw = self._bytes()

@@ -71,8 +71,8 @@ class Reply:
 class Client:
     """One keep-alive connection; not shared between threads."""
 
-    def __init__(self, port, timeout=30.0):
-        self.port, self.timeout = port, timeout * PATIENCE
+    def __init__(self, port, timeout=30.0, token=None):
+        self.port, self.timeout, self.token = port, timeout * PATIENCE, token
         self.connection = None
 
     def close(self):
@@ -82,6 +82,8 @@ class Client:
 
     def request(self, method, path, body=None, headers=None):
         headers = dict(headers or {})
+        if self.token is not None:
+            headers.setdefault("Authorization", f"Bearer {self.token}")
         if body is not None and not isinstance(body, (bytes, str)):
             body = json.dumps(body)
             headers.setdefault("Content-Type", "application/json")
@@ -219,8 +221,8 @@ class Daemon:
         except OSError:
             return False
 
-    def client(self, timeout=30.0):
-        client = Client(self.port, timeout)
+    def client(self, timeout=30.0, token=None):
+        client = Client(self.port, timeout, token)
         self.clients.append(client)
         return client
 
