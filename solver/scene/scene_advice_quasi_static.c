@@ -84,54 +84,49 @@ static void advise_faster(struct scene_advice *advice, const struct scene_loadin
 
 /* ---- loads that are there at once, for long: rest is reached sooner ---- */
 
-/* The local damping takes its share s of the out-of-balance force: a vibration loses exp(-2 s) a
- * period, and a thousandth is left after 3.5 / s of them. */
-static const double thousandth = 3.5;
-static const double rest_damping = 0.3;
-static const double rest_ramp = 5.0;      /* periods */
-static const double rest_duration = 20.0; /* periods: the ramp, and thousandth / rest_damping */
+/* Twice the angular frequency damps the slowest vibration critically; it falls by exp(-2 pi) a
+ * period, and faster ones by the same if the period is taken too long. Not by `local_damping`:
+ * where slow motion carries along the noise of small scales, that brakes the motion and not the
+ * noise. */
+static const double settle_periods = 5.0;
+static const double rest_periods = 1.0;
+static const double long_periods = 50.0; /* fewer may be a vibration that is the aim */
 
 static void advise_rest(struct scene_advice *advice, const struct scene_loading *loading)
 {
-    const struct talus_solver_options *solver = &advice->scene->solver;
-    const double enough = rest_duration * loading->period;
-    const bool damped = solver->local_damping > 0.0;
-    const double own =
-        damped ? solver->force_ramp + thousandth / solver->local_damping * loading->period : 0.0;
-    const double duration = damped ? fmax(own, enough) : enough;
-    const double gain = advice->scene->duration / duration;
-    char detail[192], change[192], saves[128];
-    if (gain < gain_min)
+    const double periods = advice->scene->duration / loading->period;
+    const double gain = periods / (settle_periods + rest_periods);
+    const double settle = settle_periods * loading->period, rest = rest_periods * loading->period;
+    const double damping = 4.0 * 3.14159265358979323846 / loading->period;
+    char detail[192], change[224], saves[96];
+    if (periods < long_periods)
         return;
-    (void)snprintf(detail, sizeof detail,
-                   "a constant load for %.0f periods of the slowest vibration (%.2g s), which %s",
-                   advice->scene->duration / loading->period, loading->period,
-                   damped ? "is damped out long before the end" : "never comes to rest");
-    if (damped)
-        (void)snprintf(change, sizeof change, "\"duration\": %.3g", duration);
-    else
-        (void)snprintf(change, sizeof change,
-                       "if rest is the aim: \"stabilise\": {\"local_damping\": %.1f, "
-                       "\"force_ramp\": %.3g}, \"duration\": %.3g",
-                       rest_damping, rest_ramp * loading->period, duration);
-    (void)snprintf(saves, sizeof saves, "a factor of %.2g in steps and wall time%s", gain,
-                   damped ? "" : ", and forces that do not ring");
-    json_t *set = json_pack("{s:f}", "/duration", duration);
-    if (!damped) {
-        (void)json_object_set_new(set, "/solver/stabilise/local_damping", json_real(rest_damping));
-        (void)json_object_set_new(set, "/solver/stabilise/force_ramp",
-                                  json_real(rest_ramp * loading->period));
-    }
-    scene_advise(advice, &(struct scene_advice_item){
-                             .pointer = "/duration",
-                             .code = "quasi_static",
-                             .detail = detail,
-                             .change = change,
-                             .saves = saves,
-                             .set = set,
-                             .quantity = "particle_steps",
-                             .factor = gain,
-                         });
+    (void)snprintf(
+        detail, sizeof detail,
+        "a constant load for %.0f periods of the slowest vibration (%.2g s), which never "
+        "comes to rest",
+        periods, loading->period);
+    (void)snprintf(change, sizeof change,
+                   "if rest is the aim: \"stabilise\": {\"settle\": {\"time\": %.3g, \"damping\": "
+                   "%.3g}}, \"duration\": %.3g (displacements count from rest on)",
+                   settle, damping, rest);
+    (void)snprintf(saves, sizeof saves,
+                   "a factor of %.2g in steps and wall time, and forces that do not ring", gain);
+    scene_advise(advice,
+                 &(struct scene_advice_item){
+                     .pointer = "/duration",
+                     .code = "quasi_static",
+                     .detail = detail,
+                     .change = change,
+                     .saves = saves,
+                     .set = json_pack("{s:f, s:f, s:f, s:f, s:f}", "/duration", rest,
+                                      "/solver/stabilise/settle/time", settle,
+                                      "/solver/stabilise/settle/damping", damping,
+                                      "/output/frames/every", 0.0, "/output/history/every",
+                                      fmin(advice->scene->output.history_every, 0.1 * rest)),
+                     .quantity = "particle_steps",
+                     .factor = gain,
+                 });
 }
 
 void scene_advise_quasi_static(struct scene_advice *advice)

@@ -140,16 +140,17 @@ void scene_advise_revolution(struct scene_advice *advice)
         struct revolution line = {.scene = scene, .axis = axis};
         if (!scene_revolves(&line) || advice->estimate == NULL)
             continue;
-        char detail[128], saves[128];
+        char detail[128], saves[160];
         const double factor =
             (double)advice->estimate->particle_count / fmax(1.0, section_particles(&line));
         (void)snprintf(detail, sizeof detail,
                        "everything in this scene is a body of revolution about a line along %c",
                        "xyz"[axis]);
-        (void)snprintf(saves, sizeof saves,
-                       "a factor of about %.2g in particles, and more in wall time (extensive "
-                       "results are then those of the whole circle)",
-                       factor);
+        (void)snprintf(
+            saves, sizeof saves,
+            "a factor of about %.2g in particles, twice that in the time of long runs (extensive "
+            "results are then those of the whole circle)",
+            factor);
         advice->settled_axes |= 7u & ~(1u << axis);
         scene_advise(advice, &(struct scene_advice_item){
                                  .pointer = "/dimension",

@@ -20,14 +20,15 @@ static double length_of(const double vector[3])
     return sqrt(vector[0] * vector[0] + vector[1] * vector[1] + vector[2] * vector[2]);
 }
 
-/* Rates that belong to the process, or motion that is not a response to the loads: nothing that a
- * slower or faster run would leave alone. */
+/* Rates or damping that belong to the process, or motion that is not a response to the loads:
+ * nothing that a slower or faster run would leave alone. */
 static bool has_own_rate(const struct talus_scene *scene)
 {
     const struct talus_solver_options *solver = &scene->solver;
     if (scene->slope_count > 0 || scene->grid.outside == TALUS_OUTSIDE_ELIMINATE ||
-        solver->viscous_damping > 0.0 || solver->pic_rate > 0.0 || !isnan(solver->flip_ratio) ||
-        solver->settle_time > 0.0 || strcmp(transfer_of(solver)->name, "flip") != 0)
+        solver->viscous_damping > 0.0 || solver->local_damping > 0.0 || solver->pic_rate > 0.0 ||
+        !isnan(solver->flip_ratio) || solver->settle_time > 0.0 ||
+        strcmp(transfer_of(solver)->name, "flip") != 0)
         return true;
     for (size_t index = 0; index < scene->body_count; index++) {
         const struct talus_body *body = &scene->bodies[index];
