@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 #include "body.h"
 
+#include <string.h>
+
 enum { DEPTH_MAX = 64 };
 
 /* The first place where brackets nest deeper than allowed, or `length`. The parser of the JSON
@@ -57,4 +59,15 @@ json_t *body_json(struct request *request)
     if (root == NULL)
         not_json(request, problem.line, problem.column, problem.text);
     return root;
+}
+
+bool body_absent(struct request *request)
+{
+    if (request->body.length == 0 || strcmp(request->body.data, "{}") == 0)
+        return true;
+    json_t *errors = json_array();
+    issue_add(errors, "", "unknown_key", NULL, NULL, "this call takes no body");
+    reply_problem(&request->reply, MHD_HTTP_UNPROCESSABLE_CONTENT, "invalid", request->raw, errors,
+                  "this call takes no body");
+    return false;
 }

@@ -5,6 +5,7 @@
 #include "identifier.h"
 #include "job_reply.h"
 #include "jobs.h"
+#include "revision.h"
 #include "service.h"
 #include "supervisor.h"
 
@@ -24,7 +25,7 @@ struct cached_body {
 };
 
 struct cached_job {
-    char id[IDENTIFIER_LENGTH + 1], etag[JOB_ETAG_SIZE];
+    char id[IDENTIFIER_LENGTH + 1], etag[REVISION_ETAG_SIZE];
     struct job_cache_mark mark;
     bool running;
     struct cached_body *body; /* NULL: empty */
@@ -101,7 +102,7 @@ static void body_keep(struct job_cache *cache, const struct job *job, struct job
     struct cached_job *place = place_of(cache, job->id);
     struct cached_body *before = place->body;
     memcpy(place->id, job->id, sizeof place->id);
-    job_etag(job, place->etag);
+    revision_etag(job->revision, place->etag);
     place->mark = mark;
     place->running = job->state == JOB_RUNNING;
     place->body = body;
@@ -117,19 +118,19 @@ static void reply_body(struct request *request, struct cached_body *body, const 
 
 void job_cache_reply(struct request *request, const struct job *job, struct job_cache_mark mark)
 {
-    char etag[JOB_ETAG_SIZE];
+    char etag[REVISION_ETAG_SIZE];
     struct cached_body *body = body_make(request->service, job);
     if (body == NULL)
         return;
     if (body->length <= BODY_BYTES_MAX && strlen(job->id) == IDENTIFIER_LENGTH)
         body_keep(request->service->job_cache, job, mark, body);
-    job_etag(job, etag);
+    revision_etag(job->revision, etag);
     reply_body(request, body, etag);
 }
 
 /* A true body of a job, with one more use, and its etag; or NULL. */
 static struct cached_body *body_find(struct job_cache *cache, const char *id,
-                                     struct job_cache_mark now, char etag[JOB_ETAG_SIZE])
+                                     struct job_cache_mark now, char etag[REVISION_ETAG_SIZE])
 {
     struct cached_body *body = NULL;
     (void)pthread_mutex_lock(&cache->mutex);
@@ -138,7 +139,7 @@ static struct cached_body *body_find(struct job_cache *cache, const char *id,
         (!place->running || place->mark.progress == now.progress)) {
         body = place->body;
         (void)atomic_fetch_add(&body->use_count, 1);
-        memcpy(etag, place->etag, JOB_ETAG_SIZE);
+        memcpy(etag, place->etag, REVISION_ETAG_SIZE);
     }
     (void)pthread_mutex_unlock(&cache->mutex);
     return body;
@@ -146,7 +147,7 @@ static struct cached_body *body_find(struct job_cache *cache, const char *id,
 
 bool job_cache_answer(struct request *request)
 {
-    char etag[JOB_ETAG_SIZE];
+    char etag[REVISION_ETAG_SIZE];
     if (request->target.query_count > 0)
         return false;
     struct cached_body *body = body_find(request->service->job_cache, request->segment,

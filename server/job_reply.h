@@ -5,9 +5,6 @@
 
 #include "request.h"
 
-enum { JOB_ETAG_SIZE = 32 };
-
-void job_etag(const struct job *job, char etag[JOB_ETAG_SIZE]);
 /* The job with its ETag. */
 void job_reply(struct request *request, unsigned int status, const struct job *job);
 /* Reads the job that the path names and the revision that If-Match asks for, -1 for any; *job (or

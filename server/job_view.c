@@ -71,6 +71,9 @@ static json_t *plain_members(struct service *service, const struct job *job)
     (void)json_object_set_new(view, "state", json_string(state));
     (void)json_object_set_new(view, "reason", text_json(job->reason));
     (void)json_object_set_new(view, "detail", text_json(job->detail));
+    (void)json_object_set_new(view, "study", text_json(job->study));
+    (void)json_object_set_new(view, "study_row",
+                              job->study == NULL ? json_null() : json_integer(job->study_row));
     (void)json_object_set_new(view, "owner", text_json(job->owner));
     (void)json_object_set_new(view, "reused_from", text_json(job->reused_from));
     (void)json_object_set_new(view, "steered", json_boolean(job->steered));

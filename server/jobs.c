@@ -7,6 +7,7 @@
 #include "folder.h"
 #include "job_patch.h"
 #include "json_text.h"
+#include "studies/study_driver.h"
 #include "supervisor.h"
 #include "waits.h"
 
@@ -33,6 +34,7 @@ static void job_changed(struct service *service, const char *id)
     waits_notify(service->waits, id);
     events_wake(service->events);
     supervisor_wake(service->supervisor);
+    study_driver_wake(service->studies);
 }
 
 void jobs_states_write(struct service *service, const char *id, bool lock_held)
@@ -104,6 +106,8 @@ enum talus_status jobs_create(struct service *service, struct job *job, const js
     if (status != TALUS_OK)
         return status;
     job->revision = 1;
+    /* Rows of a study become jobs only as places get free. */
+    int64_t queue_limit = job->study != NULL ? 0 : (int64_t)service->config->queue_limit;
     char *folder = jobs_folder(service, id);
     if (folder == NULL)
         return out_of_memory(error);
@@ -111,8 +115,7 @@ enum talus_status jobs_create(struct service *service, struct job *job, const js
     if (status == TALUS_OK)
         status = jobs_folder_sync(service, error);
     if (status == TALUS_OK)
-        status = store_job_insert(service->store, job, key, (int64_t)service->config->queue_limit,
-                                  result, existing, error);
+        status = store_job_insert(service->store, job, key, queue_limit, result, existing, error);
     if (status != TALUS_OK || *result != STORE_INSERTED)
         folder_discard(folder);
     else

@@ -232,7 +232,8 @@ static void fields_read(const struct json_field *table, const json_t *object, co
         json_pointer_join(pointer, parent, field.key);
         const bool none = given == NULL || (patch && json_is_null(given));
         bool holds = none || value_holds(&field, pointer, given, errors);
-        if (given == NULL && !field.optional && !patch)
+        /* Of an object that is missing nothing is. */
+        if (given == NULL && object != NULL && !field.optional && !patch)
             issue_add(errors, pointer, "required", NULL, NULL, "'%s' is missing", field.key);
         if (field.kind == FIELD_OBJECT && holds)
             fields_read(field.fields, json_is_object(given) ? given : NULL, pointer,

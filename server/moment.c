@@ -3,6 +3,7 @@
 
 #include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 #include <time.h>
 
@@ -43,4 +44,13 @@ void moment_text(double seconds, char text[MOMENT_TEXT_SIZE])
 void moment_now_text(char text[MOMENT_TEXT_SIZE])
 {
     moment_text(moment_now(), text);
+}
+
+double moment_parse(const char *text)
+{
+    struct tm date = {0};
+    const char *rest = text == NULL ? NULL : strptime(text, "%Y-%m-%dT%H:%M:%S", &date);
+    if (rest == NULL)
+        return 0;
+    return (double)timegm(&date) + (*rest == '.' ? strtod(rest, NULL) : 0);
 }

@@ -15,6 +15,8 @@ double moment_now(void);
 int64_t moment_now_milliseconds(void);
 /* "2026-11-22T08:13:24.123Z" */
 void moment_text(double seconds, char text[MOMENT_TEXT_SIZE]);
+/* Seconds since 1970 of such a text; 0 for anything else. */
+double moment_parse(const char *text);
 void moment_now_text(char text[MOMENT_TEXT_SIZE]);
 
 #endif

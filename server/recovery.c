@@ -4,6 +4,7 @@
 #include "event_log.h"
 #include "folder.h"
 #include "jobs.h"
+#include "studies/study_life.h"
 #include "supervisor.h"
 
 #include <dirent.h>
@@ -97,6 +98,28 @@ static enum talus_status orphans_remove(struct service *service, const struct re
     return status;
 }
 
+static bool study_note(const struct study *study, void *context)
+{
+    return json_array_append_new(context, json_string(study->id)) == 0;
+}
+
+/* Completes the removals of studies. */
+static enum talus_status studies_recover(struct service *service, struct talus_error *error)
+{
+    const struct study_filter filter = {.state = STUDY_STATE_COUNT, .deleting = true};
+    json_t *ids = json_array();
+    size_t index;
+    const json_t *id;
+    enum talus_status status = study_store_list(service->store, &filter, study_note, ids, error);
+    json_array_foreach(ids, index, id)
+    {
+        if (status == TALUS_OK)
+            status = study_removal_complete(service, json_string_value(id), error);
+    }
+    json_decref(ids);
+    return status;
+}
+
 enum talus_status recovery_run(struct service *service, struct talus_error *error)
 {
     struct recovery recovery = {.service = service};
@@ -110,6 +133,8 @@ enum talus_status recovery_run(struct service *service, struct talus_error *erro
                              recovery.transitions[index], error);
     if (status == TALUS_OK)
         status = orphans_remove(service, &recovery, error);
+    if (status == TALUS_OK)
+        status = studies_recover(service, error);
     for (size_t index = 0; index < recovery.count; index++)
         free(recovery.ids[index]);
     free(recovery.ids);

@@ -82,6 +82,8 @@ const char *request_header(const struct request *request, const char *name);
 /* Refuses query parameters that the operation of the route does not list, or whose values it does
  * not allow. Every request goes through it before its handler. False: the reply is made. */
 bool request_query_check(struct request *request);
+/* 422 over a query parameter. */
+void request_query_refuse(struct request *request, const char *parameter, const char *detail);
 /* A number in the query, or its preset without one. */
 double request_query_number(const struct request *request, const char *name);
 /* Reads the job that the path names. False: the reply is made. */

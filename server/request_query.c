@@ -115,3 +115,11 @@ double request_query_number(const struct request *request, const char *name)
         return number_read(value);
     return field == NULL ? NAN : field->preset;
 }
+
+void request_query_refuse(struct request *request, const char *parameter, const char *detail)
+{
+    json_t *errors = json_pack("[{s:s, s:s, s:s, s:s}]", "pointer", "", "parameter", parameter,
+                               "code", "unknown_value", "detail", detail);
+    reply_problem(&request->reply, MHD_HTTP_UNPROCESSABLE_CONTENT, "query", request->raw, errors,
+                  "query parameter %s: %s", parameter, detail);
+}

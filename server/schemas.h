@@ -9,6 +9,7 @@
 extern const struct json_field schema_any_object;
 extern const struct json_field schema_forecast;
 extern const struct json_field schema_forecast_answer;
+extern const struct json_field schema_forecast_question;
 extern const struct json_field schema_advice;
 extern const struct json_field schema_file_list;
 extern const struct json_field schema_frame_list;
@@ -21,6 +22,11 @@ extern const struct json_field schema_series;
 extern const struct json_field schema_series_list;
 extern const struct json_field schema_status;
 extern const struct json_field schema_readiness;
+extern const struct json_field schema_study;
+extern const struct json_field schema_study_forecast;
+extern const struct json_field schema_study_list;
+extern const struct json_field schema_study_results;
+extern const struct json_field schema_study_submission;
 extern const struct json_field schema_submission;
 extern const struct json_field schema_version;
 

@@ -56,6 +56,8 @@ const struct json_field schema_advice = {
 static const struct json_field issue_members[] = {
     MEMBER(TEXT, "pointer", "JSON Pointer into the request's body; the key even if it is missing"),
     MEMBER_SOMETIMES(TEXT, "parameter", "the query parameter, where it is one"),
+    MEMBER_SOMETIMES(INTEGER, "row", "of a study, where only that row is wrong"),
+    MEMBER_SOMETIMES(ANY, "parameters", "of that row"),
     MEMBER(TEXT, "code", "what kind of mistake"),
     MEMBER(TEXT, "detail", "for people"),
     MEMBER_SOMETIMES(ANY, "given", "what was sent, if it is short"),
@@ -67,11 +69,12 @@ static const struct json_field issue_members[] = {
 const struct json_field schema_issue = {
     .kind = FIELD_OBJECT, .schema = "Issue", .fields = issue_members};
 
+static const struct json_field any = {.kind = FIELD_ANY};
 static const struct json_field answer_members[] = {
-    {.key = "forecast", .kind = FIELD_SAME, .item = &schema_forecast},
+    {.key = "forecast", .kind = FIELD_MAP, .item = &any, .meaning = "a Forecast or StudyForecast"},
     {.key = "advice", .kind = FIELD_LIST, .item = &schema_advice},
     {.key = "warnings", .kind = FIELD_LIST, .item = &schema_issue},
-    MEMBER(SCENE, "effective_scene", NULL),
+    MEMBER_SOMETIMES(SCENE, "effective_scene", "of a job"),
     MEMBER_END,
 };
 const struct json_field schema_forecast_answer = {

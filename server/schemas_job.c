@@ -95,6 +95,8 @@ static const struct json_field job_members[] = {
      .words = reasons,
      .meaning = "of a failure"},
     MEMBER_OR_NULL(TEXT, "detail", "when, where, and what to try"),
+    MEMBER_OR_NULL(TEXT, "study", "the study whose row it is"),
+    MEMBER_OR_NULL(INTEGER, "study_row", "number of that row, from 0"),
     MEMBER_OR_NULL(TEXT, "owner", "name of the token that submitted it"),
     MEMBER_OR_NULL(TEXT, "reused_from", "the finished job whose result this one shows"),
     MEMBER(BOOLEAN, "steered", "it was told to do otherwise than its scene"),

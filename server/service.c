@@ -12,6 +12,7 @@
 #include "jobs.h"
 #include "moment.h"
 #include "recovery.h"
+#include "studies/study_driver.h"
 #include "supervisor.h"
 #include "waits.h"
 #include "work_lanes.h"
@@ -90,6 +91,8 @@ static enum talus_status parts_create(struct service *service, struct talus_erro
     if (status == TALUS_OK)
         status = job_cache_create(&service->job_cache, error);
     if (status == TALUS_OK)
+        status = study_driver_create(&service->studies, service, error);
+    if (status == TALUS_OK)
         status = recovery_run(service, error);
     if (status == TALUS_OK)
         status = lanes_create(&service->lanes, service->config, error);
@@ -99,8 +102,9 @@ static enum talus_status parts_create(struct service *service, struct talus_erro
 static void parts_destroy(struct service *service)
 {
     lanes_destroy(service->lanes);
-    job_cache_destroy(service->job_cache);
+    study_driver_destroy(service->studies);
     supervisor_destroy(service->supervisor);
+    job_cache_destroy(service->job_cache);
     events_destroy(service->events);
     waits_destroy(service->waits);
     store_close(service->store);
@@ -135,6 +139,8 @@ enum talus_status service_start(struct service *service, const struct config *co
         status = parts_create(service, error);
     if (status == TALUS_OK)
         status = supervisor_start(service->supervisor, error);
+    if (status == TALUS_OK)
+        status = study_driver_start(service->studies, error);
     if (status == TALUS_OK)
         status = http_start(&service->http, service, listener, error);
     else

@@ -20,6 +20,7 @@ struct lanes;
 struct waits;
 struct events;
 struct supervisor;
+struct study_driver;
 struct http_server;
 struct file_checksums;
 struct job_cache;
@@ -42,6 +43,7 @@ struct service {
     struct events *events;
     struct supervisor *supervisor;
     struct job_cache *job_cache;
+    struct study_driver *studies;
     struct lanes *lanes;
     struct http_server *http;
 };

@@ -31,6 +31,7 @@ enum store_insert {
 struct store_filter {
     enum job_state state; /* JOB_STATE_COUNT: all */
     const char *label_key, *label_value;
+    const char *study;  /* only its jobs */
     const char *before; /* only jobs with a smaller id */
     int64_t limit;
     bool every;    /* also those being deleted */

@@ -18,6 +18,8 @@ static void filter_sql(const struct store_filter *filter, struct text *sql)
     if (filter->label_key != NULL)
         text_add_string(sql, " AND EXISTS (SELECT 1 FROM json_each(labels) AS label"
                              " WHERE label.key = :key AND label.value = :value)");
+    if (filter->study != NULL)
+        text_add_string(sql, " AND study = :study");
     if (filter->before != NULL)
         text_add_string(sql, " AND id < :before");
     text_add_string(sql, filter->by_queue ? " ORDER BY priority DESC, id" : " ORDER BY id DESC");
@@ -70,6 +72,7 @@ enum talus_status store_job_list(struct store *store, const struct store_filter 
         filter_bind_integer(statement, ":limit", filter->limit);
         filter_bind_text(statement, ":key", filter->label_key);
         filter_bind_text(statement, ":value", filter->label_value);
+        filter_bind_text(statement, ":study", filter->study);
         filter_bind_text(statement, ":before", filter->before);
         status = list_rows(store->reader, statement, visit, context, error);
         store_release(statement);

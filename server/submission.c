@@ -4,20 +4,25 @@
 #include "reply.h"
 #include "schemas.h"
 
+#include <math.h>
 #include <stddef.h>
 #include <string.h>
 
-enum { NAME_CHARACTERS = 256, LABELS_MAX = 64, DEFAULT_RETRIES = 2, THREADS_MAX = 4096 };
+enum { LABELS_MAX = 64, DEFAULT_RETRIES = 2, THREADS_MAX = 4096 };
+
+/* With `threads` 0 every so many particles get a thread: below that, threads cost more than they
+ * give. */
+static const double particles_per_thread = 20000;
 
 #define AT(member) offsetof(struct job, member)
 
 /* `label=key:value` must stay unambiguous. */
 static bool label_key_holds(const char *key)
 {
-    return strchr(key, ':') == NULL && strlen(key) <= NAME_CHARACTERS;
+    return strchr(key, ':') == NULL && strlen(key) <= SUBMISSION_NAME_CHARACTERS;
 }
 
-static const struct json_field label = {.kind = FIELD_TEXT, .most = NAME_CHARACTERS};
+static const struct json_field label = {.kind = FIELD_TEXT, .most = SUBMISSION_NAME_CHARACTERS};
 
 static const struct json_field limit_fields[] = {
     {.key = "wall_seconds",
@@ -54,6 +59,17 @@ const struct json_field submission_limits = {
     .kind = FIELD_OBJECT, .fields = limit_fields, .meaning = "beyond which the job fails"};
 const struct json_field submission_priority = {
     .kind = FIELD_INTEGER, .minimum = -100, .maximum = 100, .meaning = "larger ones start first"};
+const struct json_field submission_threads = {
+    .kind = FIELD_INTEGER,
+    .minimum = 0,
+    .maximum = THREADS_MAX,
+    .preset = 1,
+    .meaning = "that the job takes; 0: as many as the forecast says pay"};
+const struct json_field submission_retries = {.kind = FIELD_INTEGER,
+                                              .minimum = 0,
+                                              .maximum = 100,
+                                              .preset = DEFAULT_RETRIES,
+                                              .meaning = "after crashes"};
 
 #define SETTINGS                                                                                   \
     {.key = "labels",                                                                              \
@@ -77,26 +93,22 @@ static const struct json_field submission_fields[] = {
     {.key = "name",
      .kind = FIELD_TEXT,
      .optional = true,
-     .most = NAME_CHARACTERS,
+     .most = SUBMISSION_NAME_CHARACTERS,
      .offset = AT(name),
      .meaning = "for people"},
     SETTINGS,
     {.key = "threads",
-     .kind = FIELD_INTEGER,
+     .kind = FIELD_SAME,
      .optional = true,
-     .minimum = 0,
-     .maximum = THREADS_MAX,
+     .item = &submission_threads,
      .preset = 1,
-     .offset = AT(threads),
-     .meaning = "that the job takes; 0: as many as the forecast says pay"},
+     .offset = AT(threads)},
     {.key = "retries",
-     .kind = FIELD_INTEGER,
+     .kind = FIELD_SAME,
      .optional = true,
-     .minimum = 0,
-     .maximum = 100,
+     .item = &submission_retries,
      .preset = DEFAULT_RETRIES,
-     .offset = AT(retries),
-     .meaning = "after crashes"},
+     .offset = AT(retries)},
     {.key = "reuse",
      .kind = FIELD_BOOLEAN,
      .optional = true,
@@ -129,4 +141,33 @@ void submission_read(const json_t *body, int64_t workers, struct job *job, const
 bool submission_reuse(const json_t *body)
 {
     return json_is_true(json_object_get(body, "reuse"));
+}
+
+/* The number of threads that the forecast says pay. */
+static int64_t threads_that_pay(const json_t *forecast, double workers)
+{
+    const json_t *threads = json_object_get(forecast, "threads");
+    double wanted =
+        json_is_number(threads)
+            ? json_number_value(threads)
+            : json_number_value(json_object_get(forecast, "particles")) / particles_per_thread;
+    wanted = floor(wanted);
+    return (int64_t)(wanted < 1 ? 1 : wanted > workers ? workers : wanted);
+}
+
+enum talus_status submission_answer_take(struct job *job, const json_t *answer, double workers,
+                                         struct talus_error *error)
+{
+    const json_t *forecast = json_object_get(answer, "forecast");
+    if (job->threads == 0)
+        job->threads = threads_that_pay(forecast, workers);
+    enum talus_status status = job_json_set(&job->forecast, forecast, error);
+    if (status == TALUS_OK)
+        status = job_json_set(&job->advice, json_object_get(answer, "advice"), error);
+    if (status == TALUS_OK)
+        status = job_json_set(&job->warnings, json_object_get(answer, "warnings"), error);
+    if (status == TALUS_OK)
+        status = job_text_set(&job->scene_hash, json_string_value(json_object_get(answer, "hash")),
+                              error);
+    return status;
 }

@@ -18,7 +18,15 @@ void submission_settings_read(const json_t *settings, struct job *job, json_t *e
 /* Whether a body asks for `reuse`. */
 bool submission_reuse(const json_t *body);
 
-/* For the tables of other bodies. */
-extern const struct json_field submission_labels, submission_limits, submission_priority;
+/* Takes over what a helper found about the scene: forecast, advice, warnings, hash. `threads` 0
+ * becomes as many as the forecast says pay, `workers` at most. */
+TALUS_MUST_CHECK enum talus_status submission_answer_take(struct job *job, const json_t *answer,
+                                                          double workers,
+                                                          struct talus_error *error);
+
+/* For the tables of other bodies: the offsets are those of a job. */
+extern const struct json_field submission_labels, submission_limits, submission_priority,
+    submission_threads, submission_retries;
+enum { SUBMISSION_NAME_CHARACTERS = 256 };
 
 #endif

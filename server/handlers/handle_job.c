@@ -2,13 +2,12 @@
 /* GET, PATCH, DELETE, cancel and resume of one job. */
 #include "admission.h"
 #include "body.h"
-#include "byte_range.h"
 #include "job_cache.h"
 #include "job_patch.h"
 #include "job_reply.h"
 #include "jobs.h"
-#include "moment.h"
 #include "request.h"
+#include "revision.h"
 #include "schemas.h"
 #include "service.h"
 #include "supervisor.h"
@@ -16,8 +15,6 @@
 
 #include <stdlib.h>
 #include <string.h>
-
-enum { WAIT_SECONDS_MAX = 60 };
 
 static const char *const job_headers[] = {"ETag", NULL};
 
@@ -28,19 +25,6 @@ static const struct json_field match_headers[] = {
      .meaning = "only while the job has this ETag, its revision"},
     OPERATION_END};
 
-/* Whether the answer is due now; else the request is to wait. */
-static bool answer_due(const struct request *request, const struct job *job, double wait,
-                       const char *known)
-{
-    char etag[JOB_ETAG_SIZE];
-    if (wait <= 0 || request->expired)
-        return true;
-    if (known == NULL)
-        return job_state_final((enum job_state)job->state);
-    job_etag(job, etag);
-    return !etag_listed(known, etag, true);
-}
-
 const struct operation operation_job = {
     .summary = "A job as it is",
     .path = operation_job_path,
@@ -48,7 +32,7 @@ const struct operation operation_job = {
                                           .kind = FIELD_NUMBER,
                                           .optional = true,
                                           .minimum = 0,
-                                          .maximum = WAIT_SECONDS_MAX,
+                                          .maximum = REVISION_WAIT_SECONDS_MAX,
                                           .meaning = "seconds to wait at most: with If-None-Match "
                                                      "until the revision differs, without it "
                                                      "until the job is final"},
@@ -71,44 +55,22 @@ const struct operation operation_job = {
 enum handled handle_job(struct request *request)
 {
     struct service *service = request->service;
-    const double wait = request_query_number(request, "wait");
-    const char *known = request_header(request, MHD_HTTP_HEADER_IF_NONE_MATCH);
-    if (wait > 0 && request->deadline <= 0)
-        request->deadline = moment_monotonic() + wait;
+    revision_wait_begin(request);
     for (;;) {
         struct job job;
         uint64_t mark = waits_mark(service->waits);
         const struct job_cache_mark read_at = job_cache_mark(service);
         if (!request_job(request, &job))
             return HANDLED;
-        if (answer_due(request, &job, wait, known)) {
-            char etag[JOB_ETAG_SIZE];
-            job_etag(&job, etag);
-            if (known != NULL && etag_listed(known, etag, true)) {
-                reply_empty(&request->reply, MHD_HTTP_NOT_MODIFIED);
-                reply_header(&request->reply, MHD_HTTP_HEADER_ETAG, etag);
-            } else {
-                job_cache_reply(request, &job, read_at);
-            }
-            job_release(&job);
-            return HANDLED;
-        }
+        bool due = revision_due(request, job.revision, job_state_final((enum job_state)job.state));
+        if (due && !revision_known(request, job.revision))
+            job_cache_reply(request, &job, read_at);
         job_release(&job);
+        if (due)
+            return HANDLED;
         if (waits_park(service->waits, request, mark))
             return HANDLED_PARKED;
     }
-}
-
-/* These calls take no body but an empty object. False: the reply is made. */
-static bool body_empty(struct request *request)
-{
-    if (request->body.length == 0 || strcmp(request->body.data, "{}") == 0)
-        return true;
-    json_t *errors = json_array();
-    issue_add(errors, "", "unknown_key", NULL, NULL, "this call takes no body");
-    reply_problem(&request->reply, MHD_HTTP_UNPROCESSABLE_CONTENT, "invalid", request->raw, errors,
-                  "this call takes no body");
-    return false;
 }
 
 static enum handled
@@ -119,7 +81,7 @@ job_control(struct request *request,
     int64_t revision;
     struct job job = {0};
     struct talus_error error = {0};
-    if (!body_empty(request) || !job_revision_read(request, &revision, NULL))
+    if (!body_absent(request) || !job_revision_read(request, &revision, NULL))
         return HANDLED;
     if (control(request->service, request->segment, revision, &job, &error) == TALUS_OK)
         job_reply(request, MHD_HTTP_OK, &job);
@@ -175,7 +137,7 @@ enum handled handle_job_delete(struct request *request)
 {
     int64_t revision;
     struct talus_error error = {0};
-    if (!body_empty(request) || !job_revision_read(request, &revision, NULL))
+    if (!body_absent(request) || !job_revision_read(request, &revision, NULL))
         return HANDLED;
     if (jobs_delete(request->service, request->segment, revision, &error) == TALUS_OK)
         reply_empty(&request->reply, MHD_HTTP_NO_CONTENT);

@@ -33,26 +33,19 @@ static bool list_add(const struct job *job, void *context)
     return true;
 }
 
-static void query_refused(struct request *request, const char *parameter, const char *detail)
-{
-    json_t *errors = json_pack("[{s:s, s:s, s:s, s:s}]", "pointer", "", "parameter", parameter,
-                               "code", "unknown_value", "detail", detail);
-    reply_problem(&request->reply, MHD_HTTP_UNPROCESSABLE_CONTENT, "query", request->raw, errors,
-                  "query parameter %s: %s", parameter, detail);
-}
-
 /* Reads the filter; `label` is storage for its key. False: the reply is made. */
 static bool filter_read(struct request *request, struct store_filter *filter, char **label)
 {
     const char *state = target_query(&request->target, "state");
     const char *pair = target_query(&request->target, "label");
     const char *cursor = target_query(&request->target, "cursor");
+    filter->study = target_query(&request->target, "study");
     filter->state = state == NULL ? JOB_STATE_COUNT : job_state_find(state);
     if (pair != NULL) {
         *label = strdup(pair);
         char *colon = *label == NULL ? NULL : strchr(*label, ':');
         if (colon == NULL) {
-            query_refused(request, "label", "a label is asked for as key:value");
+            request_query_refuse(request, "label", "a label is asked for as key:value");
             return false;
         }
         *colon = '\0';
@@ -60,7 +53,7 @@ static bool filter_read(struct request *request, struct store_filter *filter, ch
         filter->label_value = colon + 1;
     }
     if (cursor != NULL && !identifier_valid(cursor)) {
-        query_refused(request, "cursor", "this is no cursor of this list");
+        request_query_refuse(request, "cursor", "this is no cursor of this list");
         return false;
     }
     filter->before = cursor;
@@ -83,7 +76,7 @@ static bool fields_check(struct request *request, const char *fields)
     json_decref(view);
     text_release(&text);
     if (found != wanted)
-        query_refused(request, "fields", "a list of different members of a job is wanted");
+        request_query_refuse(request, "fields", "a list of different members of a job is wanted");
     return found == wanted;
 }
 
@@ -100,6 +93,10 @@ const struct operation operation_job_list = {
              .kind = FIELD_TEXT,
              .optional = true,
              .meaning = "KEY:VALUE: only those with this label"},
+            {.key = "study",
+             .kind = FIELD_TEXT,
+             .optional = true,
+             .meaning = "only the jobs of this study"},
             {.key = "fields",
              .kind = FIELD_TEXT,
              .optional = true,

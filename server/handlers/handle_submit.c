@@ -7,15 +7,12 @@
 #include "jobs.h"
 #include "request.h"
 #include "schemas.h"
+#include "studies/study_request.h"
 #include "submission.h"
 
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
-
-/* With `threads` 0 every so many particles get a thread: below that, threads cost more than they
- * give. */
-static const double particles_per_thread = 20000;
 
 /* What a submission has become so far. */
 struct submission {
@@ -29,35 +26,6 @@ static void submission_release(struct submission *submission)
     json_decref(submission->answer);
     json_decref(submission->errors);
     job_release(&submission->job);
-}
-
-/* The number of threads that the forecast says pay. */
-static int64_t threads_that_pay(const struct submission *submission, double workers)
-{
-    const json_t *forecast = json_object_get(submission->answer, "forecast");
-    const json_t *threads = json_object_get(forecast, "threads");
-    double wanted =
-        json_is_number(threads)
-            ? json_number_value(threads)
-            : json_number_value(json_object_get(forecast, "particles")) / particles_per_thread;
-    wanted = floor(wanted);
-    return (int64_t)(wanted < 1 ? 1 : wanted > workers ? workers : wanted);
-}
-
-static enum talus_status answer_take(struct submission *submission, struct talus_error *error)
-{
-    const json_t *answer = submission->answer;
-    struct job *job = &submission->job;
-    enum talus_status status =
-        job_json_set(&job->forecast, json_object_get(answer, "forecast"), error);
-    if (status == TALUS_OK)
-        status = job_json_set(&job->advice, json_object_get(answer, "advice"), error);
-    if (status == TALUS_OK)
-        status = job_json_set(&job->warnings, json_object_get(answer, "warnings"), error);
-    if (status == TALUS_OK)
-        status = job_text_set(&job->scene_hash, json_string_value(json_object_get(answer, "hash")),
-                              error);
-    return status;
 }
 
 /* Asks the helper about the scene. False: the reply is made. */
@@ -104,9 +72,7 @@ static bool submission_check(struct request *request, struct submission *submiss
         admission_refused(request, submission->errors);
         return false;
     }
-    if (submission->job.threads == 0)
-        submission->job.threads = threads_that_pay(submission, workers);
-    if (answer_take(submission, &error) != TALUS_OK) {
+    if (submission_answer_take(&submission->job, submission->answer, workers, &error) != TALUS_OK) {
         reply_error(&request->reply, request->raw, &error);
         return false;
     }
@@ -234,8 +200,8 @@ enum handled handle_submit(struct request *request)
 }
 
 const struct operation operation_forecast = {
-    .summary = "Checks a submission and says what it would take; makes nothing",
-    .body = &schema_submission,
+    .summary = "Checks a submission of a job or a study and says what it would take; makes nothing",
+    .body = &schema_forecast_question,
     .responses = (const struct response[]){{.status = 200,
                                             .type = "application/json",
                                             .schema = &schema_forecast_answer,
@@ -244,17 +210,33 @@ const struct operation operation_forecast = {
                                            RESPONSE_END},
 };
 
+static void study_forecast(struct request *request, const json_t *body)
+{
+    struct study_draft draft = {0};
+    if (study_request_check(request, body, &draft))
+        reply_json(&request->reply, MHD_HTTP_OK, study_draft_forecast(&draft));
+    study_draft_release(&draft);
+}
+
+static void job_forecast(struct request *request, struct submission *submission)
+{
+    if (!submission_check(request, submission))
+        return;
+    const json_t *answer = submission->answer;
+    json_t *reply = json_pack(
+        "{s:O*, s:O*, s:O*, s:O*}", "forecast", json_object_get(answer, "forecast"), "advice",
+        json_object_get(answer, "advice"), "warnings", json_object_get(answer, "warnings"),
+        "effective_scene", json_object_get(answer, "effective"));
+    reply_json(&request->reply, MHD_HTTP_OK, reply);
+}
+
 enum handled handle_forecast(struct request *request)
 {
-    struct submission submission = {.errors = json_array()};
-    if (submission_check(request, &submission)) {
-        const json_t *answer = submission.answer;
-        json_t *reply = json_pack(
-            "{s:O*, s:O*, s:O*, s:O*}", "forecast", json_object_get(answer, "forecast"), "advice",
-            json_object_get(answer, "advice"), "warnings", json_object_get(answer, "warnings"),
-            "effective_scene", json_object_get(answer, "effective"));
-        reply_json(&request->reply, MHD_HTTP_OK, reply);
-    }
+    struct submission submission = {.errors = json_array(), .body = body_json(request)};
+    if (study_draft_is(submission.body))
+        study_forecast(request, submission.body);
+    else if (submission.body != NULL)
+        job_forecast(request, &submission);
     submission_release(&submission);
     return HANDLED;
 }

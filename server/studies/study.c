@@ -6,27 +6,29 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const char *const state_names[STUDY_STATE_COUNT] = {
+const char *const study_state_words[] = {
 #define STUDY_STATE(ENUM, name) [STUDY_##ENUM] = #name,
 #include "study_states.def"
 #undef STUDY_STATE
+    [STUDY_STATE_COUNT] = NULL,
 };
 
-static const char *const row_names[ROW_STATE_COUNT] = {
+const char *const row_state_words[] = {
 #define ROW_STATE(ENUM, name) [ROW_##ENUM] = #name,
 #include "row_states.def"
 #undef ROW_STATE
+    [ROW_STATE_COUNT] = NULL,
 };
 
 const char *study_state_name(enum study_state state)
 {
-    return state_names[state];
+    return study_state_words[state];
 }
 
 enum study_state study_state_find(const char *name)
 {
     for (size_t index = 0; index < STUDY_STATE_COUNT; index++) {
-        if (strcmp(state_names[index], name) == 0)
+        if (strcmp(study_state_words[index], name) == 0)
             return (enum study_state)index;
     }
     return STUDY_STATE_COUNT;
@@ -44,7 +46,7 @@ const char *study_kind_name(enum study_kind kind)
 
 const char *row_state_name(enum row_state state)
 {
-    return row_names[state];
+    return row_state_words[state];
 }
 
 enum row_state row_state_of_job(enum job_state state)

@@ -49,6 +49,8 @@ struct study_row {
     const char *metrics; /* JSON object */
 };
 
+/* All names, NULL-terminated. */
+extern const char *const study_state_words[], *const row_state_words[];
 const char *study_state_name(enum study_state state);
 /* STUDY_STATE_COUNT if there is none of that name. */
 enum study_state study_state_find(const char *name);

@@ -6,7 +6,7 @@
 
 #include <string.h>
 
-/* Visits what a statement yields, under the reader's lock; finalizes it. NULL fails. */
+/* Visits what a statement yields, under the reader's lock; releases it. NULL fails. */
 static enum talus_status statement_visit(sqlite3 *database, sqlite3_stmt *statement,
                                          bool (*visit)(sqlite3_stmt *statement, void *context),
                                          void *context, struct talus_error *error)
@@ -19,7 +19,7 @@ static enum talus_status statement_visit(sqlite3 *database, sqlite3_stmt *statem
         more = visit(statement, context);
     enum talus_status status =
         step == SQLITE_ROW || step == SQLITE_DONE ? TALUS_OK : store_failure(database, error);
-    (void)sqlite3_finalize(statement);
+    store_release(statement);
     return status;
 }
 

@@ -22,7 +22,7 @@ static enum talus_status numbers_take(sqlite3 *database, int64_t count, int64_t 
         return TALUS_IO;
     bool found = sqlite3_step(statement) == SQLITE_ROW;
     *first = found ? sqlite3_column_int64(statement, 0) + 1 : 0;
-    (void)sqlite3_finalize(statement);
+    store_release(statement);
     if (!found)
         return store_failure(database, error);
     statement = store_prepare(
@@ -86,9 +86,9 @@ enum talus_status study_rows_append(sqlite3 *database, const char *study, int64_
             status = talus_error_set(error, TALUS_MEMORY, "memory", "", "out of memory");
         else if (sqlite3_step(statement) != SQLITE_DONE)
             status = store_failure(database, error);
-        (void)sqlite3_reset(statement);
+        store_release(statement);
     }
-    (void)sqlite3_finalize(statement);
+    store_release(statement);
     if (status != TALUS_OK)
         return status;
     statement = store_prepare(database,
@@ -113,7 +113,7 @@ enum talus_status study_rows_cancel(sqlite3 *database, const char *study, const 
     (void)sqlite3_bind_text(statement, 1, study, -1, SQLITE_STATIC);
     if (sqlite3_step(statement) == SQLITE_ROW)
         count = sqlite3_column_int64(statement, 0);
-    (void)sqlite3_finalize(statement);
+    store_release(statement);
     if (count == 0)
         return TALUS_OK;
     enum talus_status status = numbers_take(database, count, &first, error);
@@ -178,7 +178,7 @@ static enum talus_status place_find(sqlite3 *database, const struct row_end *end
         place->same_job = sqlite3_column_int(statement, 1) != 0;
         place->wanted = wanted == NULL ? NULL : strdup(wanted);
     }
-    (void)sqlite3_finalize(statement);
+    store_release(statement);
     return step == SQLITE_ROW || step == SQLITE_DONE ? TALUS_OK : store_failure(database, error);
 }
 

@@ -32,7 +32,7 @@ static enum talus_status study_find(sqlite3 *database, const char *id, bool whol
         study_row_read(statement, study);
     else
         status = step == SQLITE_DONE ? not_found(id, error) : store_failure(database, error);
-    (void)sqlite3_finalize(statement);
+    store_release(statement);
     return status;
 }
 
@@ -128,6 +128,21 @@ static enum talus_status change_write(sqlite3 *database, const struct study *stu
     return store_finish(database, statement, error);
 }
 
+/* Rows that come later are told, unlike those that a study begins with. */
+static enum talus_status rows_add(sqlite3 *database, const struct study *study, const json_t *rows,
+                                  const char *at, struct talus_error *error)
+{
+    enum talus_status status =
+        study_rows_append(database, study->id, study->row_count, rows, error);
+    for (size_t index = 0; index < json_array_size(rows) && status == TALUS_OK; index++) {
+        const struct study_transition transition = {.number = study->row_count + (int64_t)index,
+                                                    .at = at,
+                                                    .state = row_state_name(ROW_WAITING)};
+        status = study_transition_write(database, study->id, &transition, error);
+    }
+    return status;
+}
+
 static enum talus_status change_apply(sqlite3 *database, void *context, struct talus_error *error)
 {
     struct change_context *all = context;
@@ -144,13 +159,16 @@ static enum talus_status change_apply(sqlite3 *database, void *context, struct t
     if (status == TALUS_OK)
         status = change_write(database, study, error);
     if (status == TALUS_OK && change->rows != NULL)
-        status = study_rows_append(database, study->id, study->row_count, change->rows, error);
+        status = rows_add(database, study, change->rows, now, error);
     if (status == TALUS_OK && change->cancel_waiting)
         status = study_rows_cancel(database, study->id, now, error);
     if (status == TALUS_OK && study->state != state)
         status = state_write(database, study, now, error);
     if (status == TALUS_OK && study->deleting)
         status = store_keys_remove(database, study->id, error);
+    if (status == TALUS_OK && study->deleting)
+        status = store_run_for(database, "UPDATE jobs SET deleting = 1 WHERE study = ?", study->id,
+                               error);
     if (status != TALUS_OK)
         return status;
     study_release(study);

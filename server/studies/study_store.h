@@ -34,8 +34,8 @@ struct study_transition {
 /* Changes of a study in one transaction. */
 struct study_change {
     /* Alters the study, which is read without its long texts: state, detail, cancel_requested,
-     * deleting, finished_at, result and rows_expected are written back. Nothing is written when it
-     * fails. Runs on the store's thread. */
+     * deleting (of its own jobs too), finished_at, result and rows_expected are written back.
+     * Nothing is written when it fails. Runs on the store's thread. */
     enum talus_status (*apply)(struct study *study, struct study_change *change,
                                struct talus_error *error);
     void *context;

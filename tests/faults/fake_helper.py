@@ -37,10 +37,14 @@ def check(question, side):
         if key not in KEYS:
             errors.append({"pointer": "/" + key.replace("~", "~0").replace("/", "~1"),
                            "code": "unknown_key", "detail": f"no such key: {key}"})
+    if isinstance(scene.get("duration"), (int, float)) and scene["duration"] <= 0:
+        errors.append({"pointer": "/duration", "code": "range", "detail": "not above 0"})
     if errors:
         return {"ok": False, "errors": errors}
     effective = dict(scene, solver={"kind": "explicit", "time_step": "auto"})
     hashed = json.dumps({k: v for k, v in effective.items() if k != "title"}, sort_keys=True)
+    # 1 and 1.0 are the same scene.
+    hashed = json.dumps(json.loads(hashed, parse_int=float), sort_keys=True)
     forecast = {"particles": 64, "active_cells": 16, "critical_time_step": 0.001, "steps": 1000,
                 "time_step": 0.0004, "memory_bytes": 100000, "bytes_per_particle": 200,
                 "disk_bytes": 100000, "wall_seconds": {"low": 0.1, "expected": 0.2, "high": 0.4}}
@@ -91,8 +95,10 @@ def render(question, side):
 def misbehave(side, question):
     def on(name):
         return os.path.exists(os.path.join(side, "helper-" + name))
-    title = (question.get("scene") or {}).get("title", "") if isinstance(question.get("scene"), dict) else ""
-    wish = json.loads(title[5:]).get("helper") if title.startswith("fake ") else None
+    wish = None
+    for scene in [question.get("scene"), *question.get("scenes", [])]:
+        title = scene.get("title", "") if isinstance(scene, dict) else ""
+        wish = wish or (json.loads(title[5:]).get("helper") if title.startswith("fake ") else None)
     if on("exit"):
         sys.exit(3)
     if on("die") or wish == "die":

@@ -26,7 +26,8 @@ DIRECTIVE = {
     "checkpoint": 5,       # a checkpoint every so many rows; 0: none
     "flush": 1,            # a history line every so many rows
     "crash": None,         # {"row": R, "signal": S, "attempts": [1]}: dies by a signal at row R
-    "fail": None,          # {"reason": ..., "exit": ..., "row": R}: ends with a failed line
+    "fail": None,          # {"reason": ..., "exit": ..., "row": R}: ends with a failed line; with
+                           # "above": D only where the scene's duration is above D
     "exit": None,          # exit code without any last line
     "hang": False,         # stays for ever at the end, ignores SIGTERM
     "ignore_term": False,  # ignores SIGTERM but goes on
@@ -159,7 +160,9 @@ class Run:
 
     def read_directive(self):
         with open(self.scene_path, encoding="utf-8") as file:
-            title = json.load(file).get("title", "")
+            scene = json.load(file)
+        title = scene.get("title", "")
+        self.duration = scene.get("duration", 1)
         do = dict(DIRECTIVE)
         if title.startswith("fake "):
             do.update(json.loads(title[5:]))
@@ -270,6 +273,8 @@ class Run:
             signal.signal(crash.get("signal", 9), signal.SIG_DFL) if crash.get("signal", 9) != 9 else 0
             os.kill(os.getpid(), crash.get("signal", 9))
             time.sleep(5)
+        if fail and self.duration <= fail.get("above", -1):
+            fail = None
         if fail and self.row == fail.get("row", 0) and self.attempt in fail.get("attempts", [1, 2, 3]):
             self.event("failed", reason=fail["reason"], detail="as the scene asked",
                        metrics={"probe.runout.final": 1.0})
@@ -343,6 +348,7 @@ class Run:
             text += ",".join(repr(v) for v in row_values(index, self.do["rows"], self.do["spike"])) + "\n"
         replace(self.path("history.csv"), text.encode())
         self.event("finished", metrics={"probe.runout.final": 2.0 * rows,
+                                        "probe.runout.max": float(self.duration),
                                         "reaction.wall.peak": 1e6})
         time.sleep(self.do["linger"])
         self.end(0)
