@@ -4,6 +4,8 @@
 #include "base/protocol.h"
 #include "event_log.h"
 
+#include <errno.h>
+#include <stdlib.h>
 #include <string.h>
 
 /* A frame that is written again replaces the first. */
@@ -47,6 +49,7 @@ static bool frames_line(char *line, size_t length, int64_t end, void *context)
         (void)json_object_del(root, "event");
         (void)json_object_del(root, "at");
         (void)json_object_del(root, "attempt");
+        (void)json_object_del(root, "file");
         frame_put(context, root);
     } else if (message == PROTOCOL_REWIND) {
         frames_rewind(context, json_number_value(json_object_get(root, "time")));
@@ -72,4 +75,27 @@ json_t *frame_index_read(const char *folder)
         return NULL;
     }
     return frames;
+}
+
+/* "12" -> 12; -1 for anything else. */
+json_int_t frame_index_number(const char *name)
+{
+    char *end = NULL;
+    if (name[0] < '0' || name[0] > '9')
+        return -1;
+    errno = 0;
+    long long number = strtoll(name, &end, 10);
+    return errno == 0 && *end == '\0' ? number : -1;
+}
+
+const json_t *frame_index_find(const json_t *frames, json_int_t number)
+{
+    size_t index;
+    json_t *frame;
+    json_array_foreach(frames, index, frame)
+    {
+        if (json_integer_value(json_object_get(frame, "n")) == number)
+            return frame;
+    }
+    return NULL;
 }

@@ -26,7 +26,6 @@ static const struct json_field frame_members[] = {
     {.key = "fields", .kind = FIELD_LIST, .item = &text_item},
     MEMBER(INTEGER, "bytes", "size"),
     MEMBER(TEXT, "sha256", "of the file"),
-    MEMBER_SOMETIMES(TEXT, "file", "name"),
     MEMBER_END,
 };
 static const struct json_field frame_item = {

@@ -2,6 +2,7 @@
 /* GET /v1/jobs/ID/files, /files/NAME and /log */
 #include "base/protocol.h"
 #include "byte_range.h"
+#include "conditional.h"
 #include "file_checksums.h"
 #include "folder.h"
 #include "request.h"
@@ -64,7 +65,9 @@ const struct operation operation_file_list = {
     .responses = (const struct response[]){{.status = 200,
                                             .type = "application/json",
                                             .schema = &schema_file_list,
+                                            .headers = conditional_headers,
                                             .meaning = "all files"},
+                                           CONDITIONAL_UNCHANGED,
                                            RESPONSE_END},
 };
 
@@ -77,7 +80,7 @@ enum handled handle_file_list(struct request *request)
         .checksums = request->service->checksums, .folder = folder, .files = json_array()};
     folder_list(folder, file_list_add, &list);
     free(folder);
-    reply_json(&request->reply, MHD_HTTP_OK, list.files);
+    conditional_document(request, "application/json", list.files);
     return HANDLED;
 }
 
@@ -94,8 +97,6 @@ static void file_reply(struct request *request, int descriptor, const struct sta
 {
     char etag[80], range_text[96];
     uint64_t size = (uint64_t)information->st_size, first = 0, length = size;
-    const char *match = request_header(request, MHD_HTTP_HEADER_IF_MATCH);
-    const char *none_match = request_header(request, MHD_HTTP_HEADER_IF_NONE_MATCH);
     const char *range = request_header(request, MHD_HTTP_HEADER_RANGE);
     const char *if_range = request_header(request, MHD_HTTP_HEADER_IF_RANGE);
     struct reply *reply = &request->reply;
@@ -103,12 +104,11 @@ static void file_reply(struct request *request, int descriptor, const struct sta
     if (if_range != NULL && strcmp(if_range, etag) != 0)
         range = NULL;
     enum byte_range kind = byte_range_parse(range, size, &first, &length);
-    if (match != NULL && !etag_listed(match, etag, false)) {
-        reply_problem(reply, MHD_HTTP_PRECONDITION_FAILED, "changed", request->raw, NULL,
-                      "the file is another one by now");
-    } else if (none_match != NULL && etag_listed(none_match, etag, true)) {
-        reply_empty(reply, MHD_HTTP_NOT_MODIFIED);
-    } else if (kind == BYTE_RANGE_UNSATISFIABLE) {
+    if (conditional_reply(request, etag)) {
+        (void)close(descriptor);
+        return;
+    }
+    if (kind == BYTE_RANGE_UNSATISFIABLE) {
         reply_problem(reply, MHD_HTTP_RANGE_NOT_SATISFIABLE, "range", request->raw, NULL,
                       "the file has %" PRIu64 " bytes", size);
         (void)snprintf(range_text, sizeof range_text, "bytes */%" PRIu64, size);
@@ -123,7 +123,7 @@ static void file_reply(struct request *request, int descriptor, const struct sta
             reply_header(reply, MHD_HTTP_HEADER_CONTENT_RANGE, range_text);
         reply_header(reply, MHD_HTTP_HEADER_CACHE_CONTROL, "no-cache");
     }
-    reply_header(reply, MHD_HTTP_HEADER_ETAG, etag);
+    conditional_mark(request, etag);
     reply_header(reply, MHD_HTTP_HEADER_ACCEPT_RANGES, "bytes");
     if (descriptor >= 0)
         (void)close(descriptor);

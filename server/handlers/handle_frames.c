@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* GET /v1/jobs/ID/frames and /frames/N.png; pictures are drawn by a helper and kept in the job's
  * folder. */
+#include "conditional.h"
 #include "folder.h"
 #include "frame_index.h"
 #include "helper.h"
@@ -8,7 +9,6 @@
 #include "schemas.h"
 #include "service.h"
 
-#include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -38,7 +38,9 @@ const struct operation operation_frame_list = {
     .responses = (const struct response[]){{.status = 200,
                                             .type = "application/json",
                                             .schema = &schema_frame_list,
+                                            .headers = conditional_headers,
                                             .meaning = "all frames, in the order of time"},
+                                           CONDITIONAL_UNCHANGED,
                                            RESPONSE_END},
 };
 
@@ -52,31 +54,8 @@ enum handled handle_frame_list(struct request *request)
     if (frames == NULL)
         frames_unreadable(request);
     else
-        reply_json(&request->reply, MHD_HTTP_OK, frames);
+        conditional_document(request, "application/json", frames);
     return HANDLED;
-}
-
-/* "12" -> 12; -1 for anything else. */
-static json_int_t frame_number(const char *name)
-{
-    char *end = NULL;
-    if (name[0] < '0' || name[0] > '9')
-        return -1;
-    errno = 0;
-    long long number = strtoll(name, &end, 10);
-    return errno == 0 && *end == '\0' ? number : -1;
-}
-
-static const json_t *frame_find(const json_t *frames, json_int_t number)
-{
-    size_t index;
-    json_t *frame;
-    json_array_foreach(frames, index, frame)
-    {
-        if (json_integer_value(json_object_get(frame, "n")) == number)
-            return frame;
-    }
-    return NULL;
 }
 
 /* Fills in what the query leaves open. False: the reply is made. */
@@ -151,9 +130,13 @@ static void picture_reply(struct request *request, const char *folder,
                           const struct picture *picture)
 {
     struct stat information;
+    char etag[CONDITIONAL_ETAG_SIZE];
     char *pictures = folder_join(folder, pictures_folder);
-    if (pictures == NULL)
+    conditional_etag(picture->name, strlen(picture->name), etag);
+    if (pictures == NULL || conditional_reply(request, etag)) {
+        free(pictures);
         return;
+    }
     int descriptor = folder_open(pictures, picture->name);
     if (descriptor < 0 && picture_draw(request, folder, pictures, picture))
         descriptor = folder_open(pictures, picture->name);
@@ -167,6 +150,7 @@ static void picture_reply(struct request *request, const char *folder,
         information.st_size = 0;
     reply_file(&request->reply, MHD_HTTP_OK, "image/png", descriptor, 0,
                (uint64_t)information.st_size);
+    conditional_mark(request, etag);
     reply_header(&request->reply, MHD_HTTP_HEADER_CACHE_CONTROL, "no-cache");
 }
 
@@ -195,19 +179,22 @@ const struct operation operation_frame_picture = {
                                           .words = (const char *const[]){"points", "voxels", NULL},
                                           .meaning = "how particles are drawn; default points"},
                                          OPERATION_END},
-    .responses =
-        (const struct response[]){{.status = 200, .type = "image/png", .meaning = "the picture"},
-                                  RESPONSE_END},
+    .responses = (const struct response[]){{.status = 200,
+                                            .type = "image/png",
+                                            .headers = conditional_headers,
+                                            .meaning = "the picture"},
+                                           CONDITIONAL_UNCHANGED,
+                                           RESPONSE_END},
 };
 
 enum handled handle_frame_picture(struct request *request)
 {
-    struct picture picture = {.frame = frame_number(request->rest)};
+    struct picture picture = {.frame = frame_index_number(request->rest)};
     char *folder = request_folder(request);
     if (folder == NULL)
         return HANDLED;
     json_t *frames = frame_index_read(folder);
-    const json_t *frame = frame_find(frames, picture.frame);
+    const json_t *frame = frame_index_find(frames, picture.frame);
     if (frames == NULL)
         frames_unreadable(request);
     else if (picture.frame < 0 || frame == NULL)

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* GET /v1/jobs/ID/series[/NAME] */
+#include "conditional.h"
 #include "decimate.h"
 #include "history_reader.h"
 #include "request.h"
@@ -128,7 +129,9 @@ const struct operation operation_series_list = {
     .responses = (const struct response[]){{.status = 200,
                                             .type = "application/json",
                                             .schema = &schema_series_list,
+                                            .headers = conditional_headers,
                                             .meaning = "all histories"},
+                                           CONDITIONAL_UNCHANGED,
                                            RESPONSE_END},
 };
 
@@ -149,7 +152,7 @@ enum handled handle_series_list(struct request *request)
         history_reader_close(&history);
     }
     free(folder);
-    reply_json(&request->reply, MHD_HTTP_OK, list);
+    conditional_document(request, "application/json", list);
     return HANDLED;
 }
 
@@ -169,13 +172,22 @@ static void series_reply(struct request *request, const struct history_reader *h
         curve_print_csv(&text, &curve, &history->columns[column]);
     else
         curve_print_json(&text, &curve, &history->columns[column], curve.count < before);
+    char etag[CONDITIONAL_ETAG_SIZE];
+    conditional_etag(text.failed ? "" : text.data, text.failed ? 0 : text.length, etag);
+    if (conditional_reply(request, etag)) {
+        text_release(&text);
+        curve_release(&curve);
+        return;
+    }
     reply_text(&request->reply, MHD_HTTP_OK,
                csv ? "text/csv; charset=utf-8; header=present" : "application/json", &text);
     reply_header(&request->reply, MHD_HTTP_HEADER_VARY, "Accept");
+    reply_header(&request->reply, MHD_HTTP_HEADER_CACHE_CONTROL, "no-cache");
+    conditional_mark(request, etag);
     curve_release(&curve);
 }
 
-static const char *const series_headers[] = {"Vary", NULL};
+static const char *const series_headers[] = {"ETag", "Vary", NULL};
 
 const struct operation operation_series = {
     .summary = "A history of a job so far",
@@ -211,6 +223,7 @@ const struct operation operation_series = {
              .headers = series_headers,
              .meaning = "the history; as text/csv: a line with the names, then time and value"},
             {.status = 200, .type = "text/csv", .headers = series_headers, .meaning = ""},
+            CONDITIONAL_UNCHANGED,
             RESPONSE_END},
 };
 

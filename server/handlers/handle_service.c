@@ -2,6 +2,7 @@
 /* Version, liveness, readiness, and the JSON Schema of scenes. */
 #include "access.h"
 #include "audit.h"
+#include "conditional.h"
 #include "helper.h"
 #include "openapi.h"
 #include "request.h"
@@ -122,7 +123,9 @@ const struct operation operation_scene_schema = {
     .responses = (const struct response[]){{.status = 200,
                                             .type = "application/schema+json",
                                             .schema = &schema_any_object,
+                                            .headers = conditional_headers,
                                             .meaning = "the schema"},
+                                           CONDITIONAL_UNCHANGED,
                                            RESPONSE_END},
 };
 
@@ -130,7 +133,7 @@ enum handled handle_scene_schema(struct request *request)
 {
     json_t *schema = schema_copy(request);
     if (schema != NULL)
-        reply_document(&request->reply, MHD_HTTP_OK, "application/schema+json", schema);
+        conditional_document(request, "application/schema+json", schema);
     return HANDLED;
 }
 

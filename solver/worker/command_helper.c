@@ -2,6 +2,7 @@
 /* Answers questions of the daemon: one JSON object a line in, one a line out, until the end of the
  * input. Whatever is asked is answered; a bad question never ends the process. */
 #include "base/protocol.h"
+#include "output/frame_slice.h"
 #include "output/render.h"
 #include "scene/scene_json.h"
 #include "worker/check_answer.h"
@@ -104,12 +105,46 @@ static json_t *answer_render(const json_t *question)
     return json_pack("{s:b}", "ok", 1);
 }
 
+enum { SLICE_FIELD_MAX = 64 };
+
+static json_t *answer_slice(const json_t *question)
+{
+    struct talus_error error = {.status = TALUS_OK};
+    const char *names[SLICE_FIELD_MAX];
+    const json_t *fields = json_object_get(question, "fields");
+    json_int_t frame = whole_number(question, "frame", 0);
+    json_int_t stride = whole_number(question, "stride", 1);
+    struct frame_slice_request request = {
+        .folder = json_string_value(json_object_get(question, "folder")),
+        .frame = (uint64_t)frame,
+        .fields = names,
+        .field_count = json_array_size(fields),
+        .stride = (uint64_t)stride,
+        .output = json_string_value(json_object_get(question, "output")),
+    };
+    if (request.folder == NULL || request.output == NULL)
+        return check_answer_error("/folder", "required", "'folder' and 'output' are required");
+    if (frame < 0 || stride < 1)
+        return check_answer_error(frame < 0 ? "/frame" : "/stride", "type",
+                                  "expected a whole number");
+    if (request.field_count > SLICE_FIELD_MAX)
+        return check_answer_error("/fields", "range", "too many fields");
+    for (size_t index = 0; index < request.field_count; index++) {
+        names[index] = json_string_value(json_array_get(fields, index));
+        if (names[index] == NULL)
+            return check_answer_error("/fields", "type", "expected names");
+    }
+    if (frame_slice_write(&request, &error) != TALUS_OK)
+        return check_answer_error(error.pointer, error.code, error.text);
+    return json_pack("{s:b}", "ok", 1);
+}
+
 static const struct operation {
     const char *name;
     json_t *(*answer)(const json_t *question);
 } operations[] = {
     {"check", answer_check},   {"check_many", answer_check_many}, {"describe", answer_describe},
-    {"schema", answer_schema}, {"render", answer_render},
+    {"schema", answer_schema}, {"render", answer_render},         {"slice", answer_slice},
 };
 enum { OPERATION_COUNT = sizeof operations / sizeof operations[0] };
 
@@ -127,7 +162,7 @@ static json_t *answer_question(const char *line, size_t length)
     }
     if (answer == NULL)
         answer = check_answer_error("/op", "unknown_value",
-                                    "'op' is check, check_many, describe, schema or render");
+                                    "'op' is check, check_many, describe, schema, render or slice");
     json_decref(question);
     return answer;
 }
