@@ -134,25 +134,25 @@ static void check_anti_locking(struct scene_reader *reader)
                       "\"linear\"");
 }
 
-/* A key of `solver` that only one shape knows. */
-static void check_shape_key(struct scene_reader *reader, const char *key, const char *shape,
-                            const char *why)
-{
-    struct scene_path parent = {.key = "solver"};
-    struct scene_path here = {.parent = &parent, .key = key};
-    if (strcmp(shape_table[reader->scene->solver.shape_index]->name, shape) != 0)
-        scene_mistake(reader, &here, "contradiction", NULL, NULL, "%s", why);
-}
-
+/* Keys of `solver` that only one shape knows. */
 static void check_shape(struct scene_reader *reader)
 {
-    const struct talus_solver_options *solver = &reader->scene->solver;
-    if (solver->gimp_scaling != TALUS_GIMP_VOLUME)
-        check_shape_key(reader, "gimp_scaling", "gimp_scaled",
-                        "only the particles of shape \"gimp_scaled\" change their size");
-    if (solver->hybrid_scale != 0.75 || solver->hybrid_count != 8)
-        check_shape_key(reader, "cpdi_hybrid", "cpdi_hybrid",
-                        "only the shape \"cpdi_hybrid\" chooses where to take CPDI");
+    static const struct {
+        const char *key, *shape, *why;
+    } owned[] = {
+        {"gimp_scaling", "gimp_scaled",
+         "only the particles of shape \"gimp_scaled\" change their size"},
+        {"cpdi_hybrid", "cpdi_hybrid", "only the shape \"cpdi_hybrid\" chooses where to take CPDI"},
+    };
+    const struct talus_scene *scene = reader->scene;
+    const char *shape = shape_table[scene->solver.shape_index]->name;
+    struct scene_path parent = {.key = "solver"};
+    for (size_t index = 0; index < sizeof owned / sizeof owned[0]; index++) {
+        struct scene_path here = {.parent = &parent, .key = owned[index].key};
+        if (strcmp(shape, owned[index].shape) != 0 &&
+            !scene_field_is_default(scene_field_find(scene_solver_fields, owned[index].key), scene))
+            scene_mistake(reader, &here, "contradiction", NULL, NULL, "%s", owned[index].why);
+    }
 }
 
 /* Two boxes in the same place make twice the material there. */

@@ -2,11 +2,12 @@
 /* Reads an object by its table: keys, alternatives, then each field by its kind. */
 #include "scene/scene_field.h"
 
+#include <assert.h>
 #include <string.h>
 
 enum { KEY_MAX = 128 };
 
-static const struct scene_field *find_field(const struct scene_field *table, const char *key)
+const struct scene_field *scene_field_find(const struct scene_field *table, const char *key)
 {
     for (; table->key != NULL; table++) {
         if (strcmp(table->key, key) == 0)
@@ -28,7 +29,7 @@ static void check_keys(struct scene_reader *reader, const struct scene_path *pat
     json_t *value;
     json_object_foreach((json_t *)object, key, value)
     { /* the iterator does not write */
-        const struct scene_field *field = find_field(table, key);
+        const struct scene_field *field = scene_field_find(table, key);
         struct scene_path here = {.parent = path, .key = key};
         const char *nearest = field == NULL ? scene_suggest(key, words) : NULL;
         if (nearest != NULL)
@@ -119,6 +120,34 @@ static void store_whole(const struct scene_field *field, void *target, int value
         store(field, target, &truth, sizeof truth);
     else
         store(field, target, &value, sizeof value);
+}
+
+bool scene_field_is_default(const struct scene_field *field, const void *target)
+{
+    double number;
+    int index;
+    switch (field->kind) {
+    case SCENE_NUMBER:
+        memcpy(&number, (const char *)target + field->offset, sizeof number);
+        return number == field->default_value;
+    case SCENE_CHOICE:
+        memcpy(&index, (const char *)target + field->offset, sizeof index);
+        return index == (int)field->default_value;
+    case SCENE_OBJECT:
+        for (const struct scene_field *inner = field->fields; inner->key != NULL; inner++) {
+            if (!scene_field_is_default(inner, target))
+                return false;
+        }
+        return true;
+    case SCENE_BOOLEAN:
+    case SCENE_TEXT:
+    case SCENE_NAME:
+    case SCENE_VECTOR:
+    case SCENE_CUSTOM:
+        break;
+    }
+    assert(!"a kind whose default is not compared");
+    return false;
 }
 
 struct place { /* one field of one object */

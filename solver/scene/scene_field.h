@@ -65,6 +65,12 @@ void scene_fields_read(struct scene_reader *reader, const struct scene_path *pat
                        const struct scene_field *table, const json_t *object, void *target,
                        json_t *effective);
 
+/* The entry of that key, or NULL. */
+const struct scene_field *scene_field_find(const struct scene_field *table, const char *key);
+/* True if the target holds the default of a number, a word, or an object of these (stored as their
+ * kind says). */
+bool scene_field_is_default(const struct scene_field *field, const void *target);
+
 /* Reads one number; false (and a mistake) if it is not one or out of bounds. */
 bool scene_number_read(struct scene_reader *reader, const struct scene_path *path,
                        const struct scene_field *field, const json_t *given, double *value);
