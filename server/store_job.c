@@ -35,7 +35,7 @@ static enum talus_status row_find(sqlite3 *database, const char *id, struct job 
                                   struct talus_error *error)
 {
     char sql[2048];
-    (void)snprintf(sql, sizeof sql, "%s WHERE id = ?", store_row_select);
+    (void)snprintf(sql, sizeof sql, "%s FROM jobs WHERE id = ?", store_row_select);
     sqlite3_stmt *statement = store_prepare(database, sql, error);
     if (statement == NULL)
         return TALUS_IO;

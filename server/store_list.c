@@ -8,21 +8,30 @@
 #include <stdio.h>
 #include <string.h>
 
+/* Rows come in the order of an index, so that a page costs what is on it: of the jobs themselves,
+ * or of those with the label, newest first. */
 static void filter_sql(const struct store_filter *filter, struct text *sql)
 {
-    text_print(sql, "%s WHERE 1", store_row_select);
+    bool by_label = filter->label_key != NULL;
+    text_print(sql, "%s FROM %s", store_row_select,
+               by_label ? "job_labels AS tag CROSS JOIN jobs ON jobs.id = tag.job"
+                          " WHERE tag.key = :key AND tag.value = :value"
+                        : "jobs WHERE 1");
     if (!filter->every)
         text_add_string(sql, " AND deleting = 0");
     if (filter->state != JOB_STATE_COUNT)
-        text_add_string(sql, " AND state = :state");
-    if (filter->label_key != NULL)
-        text_add_string(sql, " AND EXISTS (SELECT 1 FROM json_each(labels) AS label"
-                             " WHERE label.key = :key AND label.value = :value)");
+        text_add_string(sql, by_label ? " AND EXISTS (SELECT 1 FROM jobs AS same INDEXED BY"
+                                        " jobs_by_state_newest WHERE same.id = tag.job"
+                                        " AND same.state = :state)"
+                                      : " AND state = :state");
     if (filter->study != NULL)
         text_add_string(sql, " AND study = :study");
     if (filter->before != NULL)
-        text_add_string(sql, " AND id < :before");
-    text_add_string(sql, filter->by_queue ? " ORDER BY priority DESC, id" : " ORDER BY id DESC");
+        text_print(sql, " AND %s < :before", by_label ? "tag.job" : "id");
+    if (filter->by_queue)
+        text_add_string(sql, " ORDER BY priority DESC, id");
+    else
+        text_print(sql, " ORDER BY %s DESC", by_label ? "tag.job" : "id");
     if (filter->limit > 0)
         text_add_string(sql, " LIMIT :limit");
 }

@@ -12,7 +12,7 @@
 #define JOB_REAL(name) COLUMN(name)
 const char store_row_select[] = "SELECT id"
 #include "job_columns.def"
-                                " FROM jobs ";
+    ;
 #undef JOB_TEXT
 #undef JOB_INTEGER
 #undef JOB_REAL

@@ -6,7 +6,7 @@
 #include "job.h"
 #include "store_internal.h"
 
-/* "SELECT every column FROM jobs " */
+/* "SELECT every column": the rest follows. */
 extern const char store_row_select[];
 /* Fills an empty job from a row of that statement. */
 void store_row_read(sqlite3_stmt *statement, struct job *job);

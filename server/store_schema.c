@@ -26,6 +26,21 @@ static const struct column job_columns[] = {
 /* In order: an index comes behind the columns it is over, which jobs_prepare has added. */
 static const char *const parts[] = {
     "CREATE INDEX IF NOT EXISTS jobs_by_state ON jobs (state, priority DESC, id)",
+    /* Lists are told newest first. */
+    "CREATE INDEX IF NOT EXISTS jobs_by_state_newest ON jobs (state, id)",
+    "CREATE INDEX IF NOT EXISTS jobs_by_study_newest ON jobs (study, id) WHERE study IS NOT NULL",
+    /* What the triggers below copy out of the column of labels. */
+    "CREATE TABLE IF NOT EXISTS job_labels (key TEXT NOT NULL, value TEXT NOT NULL,"
+    " job TEXT NOT NULL REFERENCES jobs (id) ON DELETE CASCADE, PRIMARY KEY (key, value, job))"
+    " WITHOUT ROWID",
+    "CREATE INDEX IF NOT EXISTS job_labels_by_job ON job_labels (job)",
+    "CREATE TRIGGER IF NOT EXISTS job_labels_of_new AFTER INSERT ON jobs"
+    " WHEN new.labels IS NOT NULL BEGIN"
+    " INSERT INTO job_labels SELECT key, value, new.id FROM json_each(new.labels); END",
+    "CREATE TRIGGER IF NOT EXISTS job_labels_of_changed AFTER UPDATE OF labels ON jobs"
+    " WHEN new.labels IS NOT old.labels BEGIN"
+    " DELETE FROM job_labels WHERE job = new.id;"
+    " INSERT INTO job_labels SELECT key, value, new.id FROM json_each(new.labels); END",
     /* Of what may answer for another job of the same scene. */
     "CREATE INDEX IF NOT EXISTS jobs_by_scene ON jobs (scene_hash, build, id)"
     " WHERE state = 2 AND steered = 0 AND deleting = 0",
@@ -71,13 +86,18 @@ static const char from_1[] = "INSERT INTO request_keys (key, owner, body, resour
                              "DROP TABLE idempotency;"
                              "UPDATE jobs SET owner = '' WHERE owner IS NULL;";
 
-static bool column_exists(sqlite3 *database, const char *name, bool *exists)
+/* What a database without the table of labels has not copied yet. */
+static const char labels_fill[] = "INSERT INTO job_labels SELECT label.key, label.value, jobs.id"
+                                  " FROM jobs, json_each(jobs.labels) AS label";
+
+static bool column_exists(sqlite3 *database, const char *table, const char *name, bool *exists)
 {
     sqlite3_stmt *statement = NULL;
-    if (sqlite3_prepare_v2(database, "SELECT 1 FROM pragma_table_info('jobs') WHERE name = ?", -1,
+    if (sqlite3_prepare_v2(database, "SELECT 1 FROM pragma_table_info(?) WHERE name = ?", -1,
                            &statement, NULL) != SQLITE_OK)
         return false;
-    (void)sqlite3_bind_text(statement, 1, name, -1, SQLITE_STATIC);
+    (void)sqlite3_bind_text(statement, 1, table, -1, SQLITE_STATIC);
+    (void)sqlite3_bind_text(statement, 2, name, -1, SQLITE_STATIC);
     int step = sqlite3_step(statement);
     *exists = step == SQLITE_ROW;
     (void)sqlite3_finalize(statement);
@@ -92,7 +112,7 @@ static bool jobs_prepare(sqlite3 *database)
         struct text sql = {0};
         bool exists = false;
         text_print(&sql, "ALTER TABLE jobs ADD COLUMN %s", job_columns[index].declaration);
-        good = !sql.failed && column_exists(database, job_columns[index].name, &exists) &&
+        good = !sql.failed && column_exists(database, "jobs", job_columns[index].name, &exists) &&
                (exists || store_execute(database, sql.data));
         text_release(&sql);
     }
@@ -102,9 +122,12 @@ static bool jobs_prepare(sqlite3 *database)
 static bool tables_prepare(sqlite3 *database, int version)
 {
     struct text sql = {0};
-    bool good = jobs_prepare(database);
+    bool labelled = false;
+    bool good = column_exists(database, "job_labels", "job", &labelled) && jobs_prepare(database);
     for (size_t index = 0; good && index < sizeof parts / sizeof parts[0]; index++)
         good = store_execute(database, parts[index]);
+    if (!labelled)
+        good = good && store_execute(database, labels_fill);
     if (version == 1)
         good = good && store_execute(database, from_1);
     text_print(&sql, "PRAGMA user_version = %d", SCHEMA_VERSION);

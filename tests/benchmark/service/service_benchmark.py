@@ -4,8 +4,7 @@
 usage: service_benchmark.py [--full] [--only PART] [--csv FILE] [--history N]
 
 Without --full everything is done in small, for `ctest -L benchmark`: only what holds on any machine
-decides (no event lost, every poll answered, the daemon's share of the processor time, query plans,
-ratios). With --full the speeds have goals too. TALUS_BUILD names the build folder."""
+decides (no event lost, every poll answered, the daemon's share of the processor time, ratios). With --full the speeds have goals too. TALUS_BUILD names the build folder."""
 import argparse
 import csv
 import os
@@ -81,11 +80,9 @@ def measure_history(daemons, full, count):
     figures += service_submit.measure(
         daemon, daemon.client(), {"scene": shipped_scene("column-at-rest")}, 20 if full else 2,
         f"with {many} jobs, submit")
-    scans = service_history.full_scans(daemon.state)
-    for text in scans + slower:
-        print("slow:", text)
+    for name in slower:
+        print("slow:", name)
     figures.append(Figure("lists that are slow because history is long", len(slower), "", 0, check=True))
-    figures.append(Figure("lists without an index", len(scans), "", 0, check=True))
     return figures
 
 

@@ -1,8 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
 """Lists, and everything else, with a long history of jobs."""
-import os
-import re
-import sqlite3
 import time
 from urllib.parse import quote
 
@@ -102,19 +99,3 @@ def measure_single(daemon, client, ids, seconds):
             Figure(f"{name}, single jobs: p99", load["p99_ms"], "ms", GOAL_MS),
             Figure(f"{name}, whole story of an ended job: p50", waits[len(waits) // 2], "ms"),
             Figure(f"{name}, whole story of an ended job: p99", waits[int(0.99 * len(waits))], "ms")]
-
-
-def full_scans(state):
-    """Queries of lists that SQLite would answer by walking over a table or by sorting, of those that
-    the daemon's source prepares; [] is good."""
-    database = sqlite3.connect(f"file:{os.path.join(state, 'talus.sqlite')}?mode=ro", uri=True)
-    found = []
-    for conditions, order in (("state = 3", "id DESC"), ("state = 0", "priority DESC, id"),
-                              ("study = 'x'", "id DESC")):
-        plan = " ".join(row[3] for row in database.execute(
-            f"EXPLAIN QUERY PLAN SELECT * FROM jobs WHERE {conditions} AND id < 'z' "
-            f"ORDER BY {order} LIMIT 50"))
-        if re.search(r"\bSCAN\b|TEMP B-TREE", plan):
-            found.append(f"{conditions}: {plan}")
-    database.close()
-    return found

@@ -39,7 +39,7 @@ def copy_rows(database, table, key, original, copies):
     rows = database.execute(f"SELECT {', '.join(columns)} FROM {table} WHERE {key} = ?", (original,))
     marks = ", ".join("?" * len(columns))
     for row in rows.fetchall():
-        database.executemany(f"INSERT INTO {table} ({', '.join(columns)}) VALUES ({marks})",
+        database.executemany(f"INSERT OR IGNORE INTO {table} ({', '.join(columns)}) VALUES ({marks})",
                              (row[:place] + (copy,) + row[place + 1:] for copy in copies))
 
 

@@ -28,7 +28,8 @@ static const char format_1[] =
     " job TEXT NOT NULL REFERENCES jobs (id) ON DELETE CASCADE, PRIMARY KEY (owner, key))"
     " WITHOUT ROWID;"
     "CREATE INDEX idempotency_by_job ON idempotency (job);"
-    "INSERT INTO jobs VALUES ('j1', 'first', NULL, 7, 1, 0.5, 0, 0, 2, 0, NULL, NULL, 0, 0, 3, 1,"
+    "INSERT INTO jobs VALUES ('j1', 'first', '{\"site\":\"north\"}', 7, 1, 0.5, 0, 0, 2, 0, NULL, "
+    "NULL, 0, 0, 3, 1,"
     " NULL, 0, 0, 0.25, 0, NULL, NULL, NULL, NULL, NULL, NULL, NULL, NULL, NULL, NULL, NULL, 'h');"
     "INSERT INTO idempotency VALUES ('k', '', 'b', 'j1');"
     "PRAGMA user_version = 1;";
@@ -43,6 +44,13 @@ static char *database_make(const char *folder, const char *sql)
     return path;
 }
 
+static bool job_count(const struct job *job, void *context)
+{
+    (void)job;
+    ++*(int *)context;
+    return true;
+}
+
 static void test_format_1_is_migrated(void **state)
 {
     const struct store_key key = {.owner = "", .key = "k", .body = "b"};
@@ -50,6 +58,8 @@ static void test_format_1_is_migrated(void **state)
     struct store *store = NULL;
     struct job job = {0};
     enum store_insert result;
+    const struct store_filter labelled = {
+        .state = JOB_STATE_COUNT, .label_key = "site", .label_value = "north"};
     char existing[64] = "", *folder = fixture_folder();
     char *path = database_make(folder, format_1);
     (void)state;
@@ -67,6 +77,9 @@ static void test_format_1_is_migrated(void **state)
         assert_int_equal(result, STORE_REPLAYED);
         assert_string_equal(existing, "j1");
         job_release(&job);
+        int count = 0;
+        assert_int_equal(store_job_list(store, &labelled, job_count, &count, &error), TALUS_OK);
+        assert_int_equal(count, 1);
         store_close(store);
     }
     free(path);
