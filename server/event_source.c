@@ -6,12 +6,12 @@ struct text *event_source_out(struct event_source *source)
     return source->of_all ? &source->reader.out : &source->stream.out;
 }
 
-void event_source_fill(struct event_source *source)
+void event_source_fill(struct event_source *source, struct event_steps *steps)
 {
     if (source->of_all)
         feed_reader_fill(&source->reader);
     else if (!source->stream.done)
-        (void)event_stream_fill(&source->stream);
+        event_steps_fill(steps, &source->stream);
 }
 
 void event_source_skip(struct event_source *source)

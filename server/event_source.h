@@ -3,7 +3,7 @@
 #ifndef TALUS_EVENT_SOURCE_H
 #define TALUS_EVENT_SOURCE_H
 
-#include "event_stream.h"
+#include "event_steps.h"
 #include "feed.h"
 
 /* Owns what it reads from; `of_all` tells which. */
@@ -15,8 +15,8 @@ struct event_source {
 
 /* Produced and not taken yet. */
 struct text *event_source_out(struct event_source *source);
-/* Appends what is new. */
-void event_source_fill(struct event_source *source);
+/* Appends what is new, which other readers of the same story may have been told already. */
+void event_source_fill(struct event_source *source, struct event_steps *steps);
 /* Leaves out what waits, and says so by a `gap`. */
 void event_source_skip(struct event_source *source);
 /* Bytes that wait. */

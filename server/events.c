@@ -82,7 +82,7 @@ static void subscription_free(void *context)
     (void)pthread_mutex_unlock(&own->events->mutex);
 }
 
-static void subscription_service(struct subscription *own, double now)
+static void subscription_service(struct subscription *own, struct event_steps *steps, double now)
 {
     struct events *events = own->events;
     struct text *out = event_source_out(&own->source);
@@ -95,7 +95,7 @@ static void subscription_service(struct subscription *own, double now)
     stalled = stalled && silent > config->gap_seconds &&
               (double)event_source_backlog(&own->source) > config->gap_bytes;
     if (idle)
-        event_source_fill(&own->source);
+        event_source_fill(&own->source, steps);
     if (stalled)
         event_source_skip(&own->source);
     if (idle && out->length == 0 && silent >= comment_seconds)
@@ -147,6 +147,13 @@ static void events_wait(struct events *events)
     events->woken = false;
 }
 
+/* Every reader that has taken what there was asks for the next look at all readers. It waits as
+ * long as the last one took, so that one look serves many of them. */
+static void looks_pace(double seconds)
+{
+    (void)usleep((useconds_t)(1e6 * (seconds < tick_seconds ? seconds : tick_seconds)));
+}
+
 static void *events_main(void *argument)
 {
     struct events *events = argument;
@@ -161,11 +168,14 @@ static void *events_main(void *argument)
         (void)pthread_mutex_unlock(&events->mutex);
         /* Readers are only added at the head and only removed by this thread. */
         double now = moment_monotonic();
+        struct event_steps steps = {0};
         if (of_all)
             feed_refresh(events->feed);
         for (struct subscription *own = first; own != NULL; own = own->next)
-            subscription_service(own, now);
+            subscription_service(own, &steps, now);
+        event_steps_clear(&steps);
         waits_tick(events->service->waits);
+        looks_pace(moment_monotonic() - now);
         (void)pthread_mutex_lock(&events->mutex);
     }
     subscriptions_sweep(events);
