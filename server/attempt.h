@@ -28,6 +28,8 @@ struct attempt {
     const char *stop_reason; /* why we stopped it ("time_limit", "disk_limit"), or NULL */
     double stop_deadline;    /* when SIGTERM becomes SIGKILL (monotonic); 0: not stopped */
     double next_disk_check;
+    double watched_until, watched_seconds; /* attempt_load.h (monotonic; [s]) */
+    double busy_seconds;                   /* of threads of other jobs meanwhile */
     struct event_tail tail;
     bool worker_started; /* its `started` line is there */
     json_t *progress;    /* the last one */

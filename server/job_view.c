@@ -34,13 +34,27 @@ static json_t *links_json(const struct job *job)
     return links;
 }
 
+/* Of a job whose worker has told nothing yet: all of its own time is left, as forecast. */
+static json_t *progress_first(const struct job *job)
+{
+    json_t *progress = json_pack("{s:i, s:i, s:i}", "fraction", 0, "time", 0, "step", 0);
+    json_t *forecast = job_state_final((enum job_state)job->state)
+                           ? NULL
+                           : json_loads(job->forecast == NULL ? "" : job->forecast, 0, NULL);
+    json_t *expected = json_object_get(json_object_get(forecast, "wall_seconds"), "expected");
+    if (expected != NULL)
+        (void)json_object_set(progress, "eta_seconds", expected);
+    json_decref(forecast);
+    return progress;
+}
+
 static json_t *progress_json(struct service *service, const struct job *job)
 {
     json_t *progress =
         job->state == JOB_RUNNING ? supervisor_progress(service->supervisor, job->id) : NULL;
-    return progress != NULL
-               ? progress
-               : document_json(job->progress, "{\"fraction\":0,\"time\":0,\"step\":0}");
+    if (progress != NULL)
+        return progress;
+    return job->progress != NULL ? document_json(job->progress, "null") : progress_first(job);
 }
 
 /* Columns whose text is a member of the view: reading and writing them again would be most of the

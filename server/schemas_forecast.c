@@ -2,6 +2,30 @@
 /* What a helper says of a scene: cost, advice, warnings. */
 #include "schemas.h"
 
+/* Of a count, or of bytes. */
+static const struct json_field range_members[] = {
+    MEMBER(INTEGER, "low", "at least"),
+    MEMBER(INTEGER, "expected", NULL),
+    MEMBER(INTEGER, "high", "at most"),
+    MEMBER_END,
+};
+
+static const struct json_field ranges_members[] = {
+    {.key = "steps",
+     .kind = FIELD_OBJECT,
+     .fields = range_members,
+     .meaning = "automatic ones follow the speeds that are reached"},
+    {.key = "memory_bytes",
+     .kind = FIELD_OBJECT,
+     .fields = range_members,
+     .meaning = "of the worker at its peak"},
+    {.key = "disk_bytes",
+     .kind = FIELD_OBJECT,
+     .fields = range_members,
+     .meaning = "of the finished job's folder"},
+    MEMBER_END,
+};
+
 static const struct json_field interval_members[] = {
     MEMBER(NUMBER, "low", "[s]"),
     MEMBER(NUMBER, "expected", "[s]"),
@@ -26,7 +50,7 @@ static const struct json_field forecast_members[] = {
     MEMBER(INTEGER, "steps", "expected"),
     MEMBER(INTEGER, "memory_bytes", "of the worker at its peak"),
     MEMBER(INTEGER, "bytes_per_particle", "of memory"),
-    MEMBER(INTEGER, "disk_bytes", "of all results"),
+    MEMBER(INTEGER, "disk_bytes", "what the job's folder does not exceed while it runs"),
     {.key = "bodies",
      .kind = FIELD_LIST,
      .optional = true,
@@ -36,7 +60,17 @@ static const struct json_field forecast_members[] = {
     {.key = "wall_seconds",
      .kind = FIELD_OBJECT,
      .fields = interval_members,
-     .meaning = "expected, with an interval"},
+     .meaning = "expected, with an interval: 95 of 100 jobs should end inside"},
+    MEMBER_SOMETIMES(NUMBER, "cpu_seconds", "expected processor time of all threads"),
+    {.key = "intervals",
+     .kind = FIELD_OBJECT,
+     .optional = true,
+     .fields = ranges_members,
+     .meaning = "of the other figures"},
+    {.key = "learn",
+     .kind = FIELD_ANY,
+     .optional = true,
+     .meaning = "what the daemon learns from when the job has finished"},
     MEMBER_END,
 };
 const struct json_field schema_forecast = {

@@ -3,6 +3,7 @@
 
 #include "access.h"
 #include "audit.h"
+#include "calibration.h"
 #include "events.h"
 #include "file_checksums.h"
 #include "folder.h"
@@ -83,6 +84,8 @@ static enum talus_status parts_create(struct service *service, struct talus_erro
     if (status == TALUS_OK)
         status = store_open(path, &service->store, error);
     if (status == TALUS_OK)
+        status = calibration_create(&service->calibration, service->store, error);
+    if (status == TALUS_OK)
         status = waits_create(&service->waits, error);
     if (status == TALUS_OK)
         status = events_create(&service->events, service, error);
@@ -107,6 +110,7 @@ static void parts_destroy(struct service *service)
     job_cache_destroy(service->job_cache);
     events_destroy(service->events);
     waits_destroy(service->waits);
+    calibration_destroy(service->calibration);
     store_close(service->store);
     file_checksums_destroy(service->checksums);
     json_decref(service->schema);

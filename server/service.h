@@ -22,6 +22,7 @@ struct events;
 struct supervisor;
 struct study_driver;
 struct http_server;
+struct calibration;
 struct file_checksums;
 struct job_cache;
 
@@ -39,6 +40,7 @@ struct service {
     json_t *schema; /* of scenes, once a helper has told it */
     struct file_checksums *checksums;
     struct store *store;
+    struct calibration *calibration;
     struct waits *waits;
     struct events *events;
     struct supervisor *supervisor;

@@ -77,6 +77,12 @@ static const char *const parts[] = {
     "CREATE TABLE IF NOT EXISTS study_transitions (row INTEGER PRIMARY KEY,"
     " study TEXT NOT NULL REFERENCES studies (id) ON DELETE CASCADE, number INTEGER NOT NULL,"
     " at TEXT NOT NULL, state TEXT NOT NULL, job TEXT, detail TEXT)",
+    /* Statistics of runs on a machine (calibration.h), and one row on how good forecasts were. */
+    "CREATE TABLE IF NOT EXISTS calibration (name TEXT PRIMARY KEY, processor TEXT NOT NULL,"
+    " build TEXT NOT NULL, count INTEGER NOT NULL, weight REAL NOT NULL, mean REAL NOT NULL,"
+    " variance REAL NOT NULL, used INTEGER NOT NULL) WITHOUT ROWID",
+    "CREATE TABLE IF NOT EXISTS forecast_quality (id INTEGER PRIMARY KEY,"
+    " judged INTEGER NOT NULL, inside INTEGER NOT NULL, recent REAL NOT NULL)",
     "CREATE INDEX IF NOT EXISTS study_transitions_by_study ON study_transitions (study, row)",
 };
 

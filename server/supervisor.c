@@ -2,6 +2,8 @@
 #include "supervisor.h"
 
 #include "attempt.h"
+#include "attempt_load.h"
+#include "calibration.h"
 #include "events.h"
 #include "executor_local.h"
 #include "folder.h"
@@ -197,6 +199,24 @@ static const struct job_outcome folder_gone = {
     .signal_number = -1,
 };
 
+/* What a job took is what the next forecasts go by, if it ran as it was forecast: from its start,
+ * as one attempt, to the end that it was submitted with. */
+static void attempt_learn(struct supervisor *supervisor, const struct attempt *attempt,
+                          const json_t *metrics)
+{
+    struct job job = {0};
+    struct talus_error error = {0};
+    const struct calibration_run run = {.threads = (double)attempt->threads,
+                                        .busy = attempt_load_busy(attempt)};
+    if (store_job_read(supervisor->service->store, attempt->id, &job, &error) == TALUS_OK &&
+        job.attempt == 1 && job.steered == 0 && job.forecast != NULL) {
+        json_t *forecast = json_loads(job.forecast, 0, NULL);
+        calibration_learn(supervisor->service->calibration, forecast, metrics, &run);
+        json_decref(forecast);
+    }
+    job_release(&job);
+}
+
 /* Records the end of an attempt whose lock we got. False: the store refused; try again later. */
 static bool attempt_record(struct supervisor *supervisor, struct attempt *attempt, bool gone)
 {
@@ -208,6 +228,8 @@ static bool attempt_record(struct supervisor *supervisor, struct attempt *attemp
     if (!gone)
         attempt_outcome(attempt, &outcome, &receipt, detail);
     enum talus_status status = jobs_finish(supervisor->service, attempt->id, &outcome, &error);
+    if (status == TALUS_OK && outcome.end == JOB_END_SUCCEEDED)
+        attempt_learn(supervisor, attempt, outcome.metrics);
     json_decref(receipt);
     if (status != TALUS_OK)
         (void)fprintf(stderr, "talusd: job %s: %s\n", attempt->id, error.text);
@@ -327,12 +349,17 @@ static bool job_start(struct supervisor *supervisor, const char *id)
     return good;
 }
 
-static int64_t threads_free(struct supervisor *supervisor)
+static int64_t threads_free(const struct supervisor *supervisor)
 {
-    int64_t free_threads = (int64_t)supervisor->service->config->workers;
-    for (struct attempt *attempt = supervisor->first; attempt != NULL; attempt = attempt->next)
-        free_threads -= attempt->threads;
-    return free_threads;
+    return (int64_t)supervisor->service->config->workers - attempt_load_threads(supervisor->first);
+}
+
+int64_t supervisor_threads(struct supervisor *supervisor)
+{
+    (void)pthread_mutex_lock(&supervisor->mutex);
+    int64_t threads = attempt_load_threads(supervisor->first);
+    (void)pthread_mutex_unlock(&supervisor->mutex);
+    return threads;
 }
 
 static void jobs_start(struct supervisor *supervisor, double now)
@@ -370,6 +397,7 @@ static void *supervisor_main(void *argument)
             (void)fprintf(stderr, "talusd: cannot read the wake-up\n");
         double now = moment_monotonic();
         struct attempt *next;
+        attempt_load_note(supervisor->first, now);
         for (struct attempt *attempt = supervisor->first; attempt != NULL; attempt = next) {
             next = attempt->next;
             attempt_service(supervisor, attempt, now);

@@ -6,6 +6,7 @@
 #include "job_reply.h"
 #include "jobs.h"
 #include "request.h"
+#include "scene_question.h"
 #include "schemas.h"
 #include "studies/study_request.h"
 #include "submission.h"
@@ -33,9 +34,7 @@ static bool scene_check(struct request *request, struct submission *submission, 
 {
     struct talus_error error = {0};
     double seconds = request->service->config->helper_seconds;
-    json_int_t threads = submission->job.threads < 1 ? 1 : submission->job.threads;
-    json_t *question =
-        json_pack("{s:s, s:O, s:I}", "op", "check", "scene", scene, "threads", threads);
+    json_t *question = scene_question(request->service, scene, submission->job.threads);
     enum talus_status status =
         question == NULL
             ? talus_error_set(&error, TALUS_MEMORY, "memory", "", "out of memory")

@@ -4,6 +4,7 @@
 #include "json_pointer.h"
 #include "moment.h"
 #include "reply.h"
+#include "scene_question.h"
 #include "studies/study_draft.h"
 #include "studies/study_metric.h"
 
@@ -111,8 +112,9 @@ static json_t *question_make(const struct check *check, size_t count)
             return NULL;
         }
     }
-    return json_pack("{s:s, s:o, s:I, s:i}", "op", "check_many", "scenes", scenes, "threads",
-                     threads, "stop_after", MISTAKEN_ROWS_MAX);
+    return json_pack("{s:s, s:o, s:I, s:i, s:o}", "op", "check_many", "scenes", scenes, "threads",
+                     threads, "stop_after", MISTAKEN_ROWS_MAX, "calibration",
+                     scene_question_calibration(check->service, threads));
 }
 
 static enum talus_status answers_take(struct check *check, const json_t *answers,
@@ -204,9 +206,8 @@ static enum talus_status first_check(struct check *check, struct talus_error *er
     struct study_draft *draft = check->draft;
     json_t *answer = NULL;
     json_t *scene = study_scene(draft->scene, json_object_get(row_at(draft, 0), "set"));
-    json_t *question =
-        scene == NULL ? NULL
-                      : json_pack("{s:s, s:o, s:i}", "op", "check", "scene", scene, "threads", 1);
+    json_t *question = scene == NULL ? NULL : scene_question(check->service, scene, 1);
+    json_decref(scene);
     enum talus_status status =
         question == NULL ? talus_error_set(error, TALUS_MEMORY, "memory", "", "out of memory")
                          : helper_ask(check->helper, question,

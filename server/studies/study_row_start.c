@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* A row that waits becomes a job, shows one that is there, or fails. */
 #include "jobs.h"
+#include "scene_question.h"
 #include "studies/study_run.h"
 #include "studies/study_store.h"
 #include "submission.h"
@@ -176,9 +177,9 @@ static enum row_start row_ask(struct row_task *task, struct helper *helper, bool
     struct talus_error error = {0};
     json_t *scene = study_scene(run->scene, task->settings);
     json_int_t threads = json_integer_value(json_object_get(run->options, "threads"));
-    json_t *question = scene == NULL ? NULL
-                                     : json_pack("{s:s, s:o, s:I}", "op", "check", "scene", scene,
-                                                 "threads", threads < 1 ? 1 : threads);
+    json_t *question =
+        scene == NULL ? NULL : scene_question(task->service, scene, threads < 1 ? 1 : threads);
+    json_decref(scene);
     *asked = false;
     if (question == NULL)
         return row_fail(task, "the row cannot be put into the scene");
