@@ -11,6 +11,14 @@ int64_t attempt_load_threads(const struct attempt *first)
     return threads;
 }
 
+int64_t attempt_load_working(const struct attempt *first)
+{
+    int64_t threads = 0;
+    for (const struct attempt *attempt = first; attempt != NULL; attempt = attempt->next)
+        threads += attempt->last == NULL ? attempt->threads : 0;
+    return threads;
+}
+
 void attempt_load_note(struct attempt *first, double now)
 {
     const int64_t threads = attempt_load_threads(first);

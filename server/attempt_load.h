@@ -7,8 +7,9 @@
 
 struct attempt;
 
-/* Threads of all attempts of a list. */
+/* Threads of all attempts of a list; and of those whose workers still have something to do. */
 int64_t attempt_load_threads(const struct attempt *first);
+int64_t attempt_load_working(const struct attempt *first);
 /* Accounts for the time since the last call: to be called whenever a list may change. */
 void attempt_load_note(struct attempt *first, double now);
 /* Threads of other jobs, on average over the attempt; negative if it was not watched all the

@@ -357,7 +357,7 @@ static int64_t threads_free(const struct supervisor *supervisor)
 int64_t supervisor_threads(struct supervisor *supervisor)
 {
     (void)pthread_mutex_lock(&supervisor->mutex);
-    int64_t threads = attempt_load_threads(supervisor->first);
+    int64_t threads = attempt_load_working(supervisor->first);
     (void)pthread_mutex_unlock(&supervisor->mutex);
     return threads;
 }

@@ -23,7 +23,7 @@ TALUS_MUST_CHECK enum talus_status supervisor_start(struct supervisor *superviso
 void supervisor_destroy(struct supervisor *supervisor);
 /* Looks at the jobs now. NULL is fine. */
 void supervisor_wake(struct supervisor *supervisor);
-/* Threads of the jobs that run now. */
+/* Threads of the jobs that have work to do now. */
 int64_t supervisor_threads(struct supervisor *supervisor);
 /* The last progress of a running job, or NULL; new reference. */
 json_t *supervisor_progress(struct supervisor *supervisor, const char *id);

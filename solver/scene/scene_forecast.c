@@ -12,7 +12,7 @@
 static const double frames_in_flight = 4.0;
 static const double process_bytes = 22e6; /* of the worker without a simulation */
 /* Peaks of memory lie within that of the estimate, down and up (docs/performance.md). */
-static const double memory_low = 0.7, memory_high = 1.4;
+static const double memory_low = 0.75, memory_high = 1.3;
 
 static json_t *whole(double value)
 {
