@@ -95,7 +95,8 @@ bool request_query_check(struct request *request)
         if (field == NULL)
             return refuse_unknown(request, parameter);
         for (size_t other = 0; other < index; other++) {
-            if (strcmp(request->target.query[other].name, parameter->name) == 0)
+            if (field->kind != FIELD_LIST &&
+                strcmp(request->target.query[other].name, parameter->name) == 0)
                 return refuse(request, parameter, "repeated", "is given twice");
         }
         if ((field->kind == FIELD_NUMBER || field->kind == FIELD_INTEGER) &&

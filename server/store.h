@@ -27,10 +27,18 @@ enum store_insert {
     STORE_QUEUE_FULL,
 };
 
+struct store_label {
+    const char *key, *value;
+};
+
+enum { STORE_LABEL_MAX = 16 };
+
 /* Which jobs a list shows, newest first. Everything is borrowed and optional (NULL, 0). */
 struct store_filter {
-    enum job_state state; /* JOB_STATE_COUNT: all */
-    const char *label_key, *label_value;
+    enum job_state state;                       /* JOB_STATE_COUNT: all */
+    struct store_label labels[STORE_LABEL_MAX]; /* all of these */
+    size_t label_count;
+    const char *text;   /* part of the name; the case of ASCII letters does not count */
     const char *study;  /* only its jobs */
     const char *before; /* only jobs with a smaller id */
     int64_t limit;

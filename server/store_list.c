@@ -12,13 +12,20 @@
  * or of those with the label, newest first. */
 static void filter_sql(const struct store_filter *filter, struct text *sql)
 {
-    bool by_label = filter->label_key != NULL;
+    bool by_label = filter->label_count > 0;
     text_print(sql, "%s FROM %s", store_row_select,
                by_label ? "job_labels AS tag CROSS JOIN jobs ON jobs.id = tag.job"
-                          " WHERE tag.key = :key AND tag.value = :value"
+                          " WHERE tag.key = :key0 AND tag.value = :value0"
                         : "jobs WHERE 1");
+    for (size_t index = 1; index < filter->label_count; index++)
+        text_print(sql,
+                   " AND EXISTS (SELECT 1 FROM job_labels AS other WHERE other.job = tag.job"
+                   " AND other.key = :key%zu AND other.value = :value%zu)",
+                   index, index);
     if (!filter->every)
         text_add_string(sql, " AND deleting = 0");
+    if (filter->text != NULL)
+        text_add_string(sql, " AND instr(lower(name), lower(:text)) > 0");
     if (filter->state != JOB_STATE_COUNT)
         text_add_string(sql, by_label ? " AND EXISTS (SELECT 1 FROM jobs AS same INDEXED BY"
                                         " jobs_by_state_newest WHERE same.id = tag.job"
@@ -41,6 +48,17 @@ static void filter_bind_text(sqlite3_stmt *statement, const char *name, const ch
     int index = sqlite3_bind_parameter_index(statement, name);
     if (index > 0)
         (void)sqlite3_bind_text(statement, index, value, -1, SQLITE_STATIC);
+}
+
+static void filter_bind_labels(sqlite3_stmt *statement, const struct store_filter *filter)
+{
+    char key[24], value[24];
+    for (size_t index = 0; index < filter->label_count; index++) {
+        (void)snprintf(key, sizeof key, ":key%zu", index);
+        (void)snprintf(value, sizeof value, ":value%zu", index);
+        filter_bind_text(statement, key, filter->labels[index].key);
+        filter_bind_text(statement, value, filter->labels[index].value);
+    }
 }
 
 static void filter_bind_integer(sqlite3_stmt *statement, const char *name, int64_t value)
@@ -79,8 +97,8 @@ enum talus_status store_job_list(struct store *store, const struct store_filter 
     if (statement != NULL) {
         filter_bind_integer(statement, ":state", (int64_t)filter->state);
         filter_bind_integer(statement, ":limit", filter->limit);
-        filter_bind_text(statement, ":key", filter->label_key);
-        filter_bind_text(statement, ":value", filter->label_value);
+        filter_bind_labels(statement, filter);
+        filter_bind_text(statement, ":text", filter->text);
         filter_bind_text(statement, ":study", filter->study);
         filter_bind_text(statement, ":before", filter->before);
         status = list_rows(store->reader, statement, visit, context, error);

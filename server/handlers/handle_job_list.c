@@ -5,10 +5,9 @@
 #include "request.h"
 #include "schemas.h"
 
-#include <stdlib.h>
 #include <string.h>
 
-enum { LIMIT_DEFAULT = 100, LIMIT_MAX = 500 };
+enum { LIMIT_DEFAULT = 100, LIMIT_MAX = 500, LABEL_KEY_BYTES = 300 };
 
 struct list {
     struct service *service;
@@ -33,25 +32,39 @@ static bool list_add(const struct job *job, void *context)
     return true;
 }
 
-/* Reads the filter; `label` is storage for its key. False: the reply is made. */
-static bool filter_read(struct request *request, struct store_filter *filter, char **label)
+/* Reads the labels that are asked for; `keys` is storage. False: the reply is made. */
+static bool labels_read(struct request *request, struct store_filter *filter,
+                        char keys[STORE_LABEL_MAX][LABEL_KEY_BYTES])
 {
-    const char *state = target_query(&request->target, "state");
-    const char *pair = target_query(&request->target, "label");
-    const char *cursor = target_query(&request->target, "cursor");
-    filter->study = target_query(&request->target, "study");
-    filter->state = state == NULL ? JOB_STATE_COUNT : job_state_find(state);
-    if (pair != NULL) {
-        *label = strdup(pair);
-        char *colon = *label == NULL ? NULL : strchr(*label, ':');
-        if (colon == NULL) {
+    for (size_t index = 0; index < request->target.query_count; index++) {
+        const struct target_parameter *parameter = &request->target.query[index];
+        if (strcmp(parameter->name, "label") != 0)
+            continue;
+        const char *colon = strchr(parameter->value, ':');
+        size_t length = colon == NULL ? LABEL_KEY_BYTES : (size_t)(colon - parameter->value);
+        if (length >= LABEL_KEY_BYTES || filter->label_count == STORE_LABEL_MAX) {
             request_query_refuse(request, "label", "a label is asked for as key:value");
             return false;
         }
-        *colon = '\0';
-        filter->label_key = *label;
-        filter->label_value = colon + 1;
+        char *key = keys[filter->label_count];
+        memcpy(key, parameter->value, length);
+        key[length] = '\0';
+        filter->labels[filter->label_count++] = (struct store_label){key, colon + 1};
     }
+    return true;
+}
+
+/* Reads the filter; `keys` is storage of its labels. False: the reply is made. */
+static bool filter_read(struct request *request, struct store_filter *filter,
+                        char keys[STORE_LABEL_MAX][LABEL_KEY_BYTES])
+{
+    const char *state = target_query(&request->target, "state");
+    const char *cursor = target_query(&request->target, "cursor");
+    filter->study = target_query(&request->target, "study");
+    filter->state = state == NULL ? JOB_STATE_COUNT : job_state_find(state);
+    filter->text = target_query(&request->target, "text");
+    if (!labels_read(request, filter, keys))
+        return false;
     if (cursor != NULL && !identifier_valid(cursor)) {
         request_query_refuse(request, "cursor", "this is no cursor of this list");
         return false;
@@ -90,9 +103,15 @@ const struct operation operation_job_list = {
              .words = job_state_words,
              .meaning = "only those in this state"},
             {.key = "label",
+             .kind = FIELD_LIST,
+             .item = &(const struct json_field){.kind = FIELD_TEXT},
+             .optional = true,
+             .meaning = "KEY:VALUE: only those with this label; may be repeated, for several"},
+            {.key = "text",
              .kind = FIELD_TEXT,
              .optional = true,
-             .meaning = "KEY:VALUE: only those with this label"},
+             .meaning = "only those whose name contains this; the case of ASCII letters does not "
+                        "count"},
             {.key = "study",
              .kind = FIELD_TEXT,
              .optional = true,
@@ -124,13 +143,11 @@ enum handled handle_job_list(struct request *request)
 {
     struct talus_error error = {0};
     struct store_filter filter = {.state = JOB_STATE_COUNT};
-    char *label = NULL;
+    char keys[STORE_LABEL_MAX][LABEL_KEY_BYTES];
     const double limit = request_query_number(request, "limit");
     const char *fields = target_query(&request->target, "fields");
-    if (!fields_check(request, fields) || !filter_read(request, &filter, &label)) {
-        free(label);
+    if (!fields_check(request, fields) || !filter_read(request, &filter, keys))
         return HANDLED;
-    }
     struct list list = {.service = request->service, .fields = fields, .limit = (size_t)limit};
     filter.limit = (int64_t)limit + 1;
     text_add_string(&list.text, "{\"jobs\":[");
@@ -143,6 +160,5 @@ enum handled handle_job_list(struct request *request)
         reply_error(&request->reply, request->raw, &error);
     }
     text_release(&list.text);
-    free(label);
     return HANDLED;
 }

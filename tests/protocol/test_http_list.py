@@ -73,6 +73,33 @@ class List(DaemonTest):
         self.assertEqual(self.page("?label=" + quote("parity:%", safe=""))["jobs"], [])
         self.assertEqual(self.page("?label=" + quote("parity:' OR 1=1 --", safe=""))["jobs"], [])
 
+    def test_several_labels(self):
+        query = "?label=parity:odd&label=" + quote("text:a:b c&d", safe="")
+        self.assertEqual([job["id"] for job in self.page(query)["jobs"]], self.jobs[1::2][::-1])
+        self.assertEqual(self.page("?label=parity:odd&label=parity:even")["jobs"], [])
+        found, pages = self.all_pages("&label=parity:odd&label=" + quote("text:a:b c&d", safe=""), 2)
+        self.assertEqual((found, pages), (self.jobs[1::2][::-1], 6))
+
+    def test_text(self):
+        found = [job["name"] for job in self.page("?text=N1")["jobs"]]
+        self.assertEqual(found, [f"n{index}" for index in range(19, 9, -1)] + ["n1"])
+        self.assertEqual(self.page("?text=" + quote("n_", safe=""))["jobs"], [])
+        self.assertEqual(self.page("?text=" + quote("%", safe=""))["jobs"], [])
+        found = [job["name"] for job in self.page("?text=n1&label=parity:odd&state=succeeded")["jobs"]]
+        self.assertEqual(found, ["n19", "n17", "n15", "n13", "n11", "n1"])
+        names, _ = self.all_pages("&text=n2", 1)
+        self.assertEqual(names, [self.jobs[index] for index in (22, 21, 20, 2)])
+
+    def test_labels_follow_changes(self):
+        job = self.client.submit({"seconds": 30}, labels={"turn": "one"})["id"]
+        self.client.request("PATCH", f"/v1/jobs/{job}", {"labels": {"turn": "two"}})
+        self.assertEqual(self.page("?label=turn:one")["jobs"], [])
+        self.assertEqual([j["id"] for j in self.page("?label=turn:two")["jobs"]], [job])
+        self.client.post(f"/v1/jobs/{job}/cancel")
+        self.client.finish(job)
+        self.client.delete(f"/v1/jobs/{job}")
+        self.assertEqual(self.page("?label=turn:two")["jobs"], [])
+
     def test_fields(self):
         for job in self.page("?fields=id,state&limit=3")["jobs"]:
             self.assertEqual(set(job), {"id", "state"})

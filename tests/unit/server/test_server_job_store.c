@@ -235,10 +235,10 @@ static void test_lists(void **state)
     expect_list(fixture->store, (struct store_filter){.state = JOB_QUEUED, .by_queue = true},
                 "j2 j3 ");
     expect_list(fixture->store,
-                (struct store_filter){.state = all, .label_key = "a\"b", .label_value = "c:d"},
+                (struct store_filter){.state = all, .labels = {{"a\"b", "c:d"}}, .label_count = 1},
                 "j3 ");
     expect_list(fixture->store,
-                (struct store_filter){.state = all, .label_key = "a", .label_value = "c"}, "");
+                (struct store_filter){.state = all, .labels = {{"a", "c"}}, .label_count = 1}, "");
 }
 
 enum { WRITERS = 8, WRITES = 10 };

@@ -59,7 +59,7 @@ static void test_document(void **state)
     assert_string_equal(json_string_value(FIND(document, "openapi")), "3.1.0");
     json_t *list = FIND(document, "paths", "/v1/jobs", "get");
     assert_string_equal(json_string_value(FIND(list, "operationId")), "job_list");
-    assert_int_equal(json_array_size(FIND(list, "parameters")), 6);
+    assert_int_equal(json_array_size(FIND(list, "parameters")), 7);
     json_t *series = FIND(document, "paths", "/v1/jobs/{id}/series/{name}", "get", "responses",
                           "200", "content");
     assert_int_equal(json_object_size(series), 2);

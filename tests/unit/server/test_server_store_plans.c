@@ -73,21 +73,21 @@ static void test_lists_walk_over_indices(void **state)
     filter = (struct store_filter){.state = JOB_QUEUED, .by_queue = true};
     assert_int_equal(list_cheaply(store, filter), 0);
     filter = all;
-    filter.label_key = "even";
-    filter.label_value = "1";
+    filter.labels[0] = (struct store_label){"even", "1"};
+    filter.label_count = 1;
     assert_int_equal(list_cheaply(store, filter), PAGE);
     filter.before = "j030";
     filter.state = JOB_FAILED;
     assert_int_equal(list_cheaply(store, filter), PAGE);
     filter = all;
-    filter.label_key = "n";
-    filter.label_value = "7";
+    filter.labels[0] = (struct store_label){"n", "7"};
+    filter.label_count = 1;
     assert_int_equal(list_cheaply(store, filter), 1);
     /* What a label was does not count any more. */
     assert_int_equal(store_job_change(store, "j007", relabel, "{\"n\":\"8\"}", NULL, &error),
                      TALUS_OK);
     assert_int_equal(list_cheaply(store, filter), 0);
-    filter.label_value = "8";
+    filter.labels[0].value = "8";
     assert_int_equal(list_cheaply(store, filter), 2);
     assert_int_equal(store_job_remove(store, "j007", &error), TALUS_OK);
     assert_int_equal(list_cheaply(store, filter), 1);

@@ -59,7 +59,7 @@ static void test_format_1_is_migrated(void **state)
     struct job job = {0};
     enum store_insert result;
     const struct store_filter labelled = {
-        .state = JOB_STATE_COUNT, .label_key = "site", .label_value = "north"};
+        .state = JOB_STATE_COUNT, .labels = {{"site", "north"}}, .label_count = 1};
     char existing[64] = "", *folder = fixture_folder();
     char *path = database_make(folder, format_1);
     (void)state;
