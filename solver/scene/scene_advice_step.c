@@ -115,7 +115,8 @@ static void advise_larger(struct scene_advice *advice, double share, double auto
 
 void scene_advise_time_step(struct scene_advice *advice)
 {
-    const double enough = 0.4; /* the default */
+    const double enough = 0.4;      /* the default */
+    const double least_steps = 100; /* fewer do not show how something moves, stable or not */
     const struct talus_estimate *estimate = advice->estimate;
     if (estimate == NULL)
         return;
@@ -135,6 +136,7 @@ void scene_advise_time_step(struct scene_advice *advice)
                        share);
         advise_smaller(advice, "critical_in_motion", detail);
     } else if (share < 0.5 * automatic * (1.0 - 1e-9) &&
+               advice->scene->duration > least_steps * automatic * estimate->critical_time_step &&
                /* There the critical step itself falls with the mass of nodes that hardly carry
                 * any, and the forecast does not know how far. */
                !(solver->stress_update == TALUS_STRESS_LAST &&

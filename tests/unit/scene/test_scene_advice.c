@@ -25,6 +25,12 @@
 static const struct advice_case steps[] = {
     {TIME_STEP, "small_time_step", BASE_PLANE, {{TIME_STEP, "1e-3"}}, {{TIME_STEP, "2e-3"}}},
     {COURANT, "small_time_step", BASE_PLANE, {{COURANT, "0.1"}}, {{COURANT, "0.3"}}},
+    /* 60 steps would not show much. */
+    {TIME_STEP,
+     "small_time_step",
+     BASE_PLANE,
+     {{TIME_STEP, "1e-3"}},
+     {{"/duration", "0.2"}, {"/references/0/curve", "[[0, 4], [0.1, 6]]"}}},
     /* There nobody knows the critical step well enough. */
     {TIME_STEP,
      "small_time_step",
