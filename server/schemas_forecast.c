@@ -76,12 +76,24 @@ static const struct json_field forecast_members[] = {
 const struct json_field schema_forecast = {
     .kind = FIELD_OBJECT, .schema = "Forecast", .fields = forecast_members};
 
+static const struct json_field any = {.kind = FIELD_ANY};
+static const struct json_field any_number = {.kind = FIELD_NUMBER};
 static const struct json_field advice_members[] = {
     MEMBER(TEXT, "pointer", "JSON Pointer into the scene"),
     MEMBER(TEXT, "code", "what kind of advice"),
     MEMBER(TEXT, "detail", "what was found"),
     MEMBER(TEXT, "change", "what to write instead"),
     MEMBER(TEXT, "saves", "what that saves or avoids"),
+    {.key = "set",
+     .kind = FIELD_MAP,
+     .optional = true,
+     .item = &any,
+     .meaning = "JSON Pointer into the effective scene: the value that follows the advice"},
+    {.key = "saving",
+     .kind = FIELD_MAP,
+     .optional = true,
+     .item = &any_number,
+     .meaning = "quantity: the factor by which following it makes it smaller"},
     MEMBER_END,
 };
 const struct json_field schema_advice = {
@@ -103,7 +115,6 @@ static const struct json_field issue_members[] = {
 const struct json_field schema_issue = {
     .kind = FIELD_OBJECT, .schema = "Issue", .fields = issue_members};
 
-static const struct json_field any = {.kind = FIELD_ANY};
 static const struct json_field answer_members[] = {
     {.key = "forecast", .kind = FIELD_MAP, .item = &any, .meaning = "a Forecast or StudyForecast"},
     {.key = "advice", .kind = FIELD_LIST, .item = &schema_advice},
