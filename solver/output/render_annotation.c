@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 #include "output/render_annotation.h"
+#include "output/render_text.h"
 #include "output/render_vector.h"
 
 #include <math.h>
@@ -20,28 +21,6 @@ struct layout layout_find(int width, double aspect, bool with_bar)
                            .height = (int)ceil(top + plot_height + bottom),
                            .font = font,
                            .plot = {left, top, plot_width, plot_height}};
-}
-
-static void set_text(cairo_t *context, double size, bool bold)
-{
-    cairo_select_font_face(context, "sans-serif", CAIRO_FONT_SLANT_NORMAL,
-                           bold ? CAIRO_FONT_WEIGHT_BOLD : CAIRO_FONT_WEIGHT_NORMAL);
-    cairo_set_font_size(context, size);
-    cairo_set_source_rgb(context, 0.15, 0.16, 0.18);
-}
-
-/* Text whose box is placed so that the point lies at the given share of its width and height
- * (0, 0: top left; 1, 1: bottom right). */
-static void draw_text(cairo_t *context, double x, double y, double share_x, double share_y,
-                      const char *text)
-{
-    cairo_text_extents_t text_size;
-    cairo_font_extents_t font_size;
-    cairo_text_extents(context, text, &text_size);
-    cairo_font_extents(context, &font_size);
-    const double height = 0.72 * font_size.ascent; /* of digits and capitals */
-    cairo_move_to(context, x - share_x * text_size.x_advance, y + (1.0 - share_y) * height);
-    cairo_show_text(context, text);
 }
 
 /* One axis along an edge of the view's box; labels stand on the side `outward` (unit, pixels). */
@@ -73,17 +52,18 @@ static void draw_axis(cairo_t *context, const struct layout *layout, const struc
                       y + 0.4 * font * line->outward[1]);
         cairo_stroke(context);
         ticks_format(&ticks, index, text, sizeof text);
-        draw_text(context, x + 0.7 * font * line->outward[0], y + 0.7 * font * line->outward[1],
-                  share_x, share_y, text);
+        render_text(context, x + 0.7 * font * line->outward[0], y + 0.7 * font * line->outward[1],
+                    share_x, share_y, text);
     }
     if (fabs(line->outward[0]) > 0.9) { /* beside an upright axis there is no room for its name */
-        draw_text(context, to.x, fmin(from.y, to.y) - 0.8 * font, 0.5, 1.0, axis_names[line->axis]);
+        render_text(context, to.x, fmin(from.y, to.y) - 0.8 * font, 0.5, 1.0,
+                    axis_names[line->axis]);
         return;
     }
     const double distance = 1.4 + 0.9 * fabs(line->outward[1]) + 1.6 * fabs(line->outward[0]);
-    draw_text(context, (from.x + to.x) / 2.0 + distance * font * line->outward[0],
-              (from.y + to.y) / 2.0 + distance * font * line->outward[1], share_x, share_y,
-              axis_names[line->axis]);
+    render_text(context, (from.x + to.x) / 2.0 + distance * font * line->outward[0],
+                (from.y + to.y) / 2.0 + distance * font * line->outward[1], share_x, share_y,
+                axis_names[line->axis]);
 }
 
 /* Which way is out of the box on the screen for an edge: away from the box's middle. */
@@ -130,7 +110,7 @@ static struct axis_line choose_edge(const struct view *view, int axis, const dou
 void annotate_axes(cairo_t *context, const struct layout *layout, const struct view *view,
                    const struct render_scene *scene)
 {
-    set_text(context, 0.9 * layout->font, false);
+    render_text_style(context, 0.9 * layout->font, false);
     for (int axis = 0; axis < 3; axis++) {
         double direction[3];
         if (axis >= (view->solid ? 3 : scene->axis_count))
@@ -145,49 +125,17 @@ void annotate_axes(cairo_t *context, const struct layout *layout, const struct v
     }
 }
 
-/* A prefix that keeps the numbers of a bar readable: only for units that take one. */
-struct prefix {
-    double factor;
-    const char *name;
-};
-
-static struct prefix find_prefix(const char *unit, const struct colour_range *range)
+static struct unit_prefix find_prefix(const char *unit, const struct colour_range *range)
 {
-    static const char *const plain[] = {"Pa", "N", "J"};
-    const double size = fmax(fabs(range->low), fabs(range->high));
-    for (size_t index = 0; index < sizeof plain / sizeof plain[0]; index++) {
-        if (strcmp(unit, plain[index]) != 0 || size < 2e3)
-            continue;
-        return size < 2e6   ? (struct prefix){1e-3, "k"}
-               : size < 2e9 ? (struct prefix){1e-6, "M"}
-                            : (struct prefix){1e-9, "G"};
-    }
-    return (struct prefix){1.0, ""};
+    return render_prefix_find(unit, fmax(fabs(range->low), fabs(range->high)));
 }
 
 static void format_unit(const struct render_data *data, const struct colour_range *range,
                         char *text, size_t size)
 {
-    const struct prefix prefix = find_prefix(data->unit, range);
+    const struct unit_prefix prefix = find_prefix(data->unit, range);
     const bool plain = strcmp(data->unit, "1") == 0 || data->unit[0] == '\0';
     (void)snprintf(text, size, "%s%s", prefix.name, plain ? "-" : data->unit);
-}
-
-static void draw_bar_ticks(cairo_t *context, const struct layout *layout,
-                           const struct rectangle *bar, double low, double high)
-{
-    const double font = layout->font;
-    const struct ticks ticks = ticks_find(low, high, (int)fmax(2.0, bar->height / (3.0 * font)));
-    for (long index = ticks.first; index <= ticks.last; index++) {
-        char text[32];
-        const double share = ((double)index * ticks.step - low) / (high - low);
-        const double y = bar->top + bar->height * (1.0 - share);
-        cairo_move_to(context, bar->left + bar->width, y);
-        cairo_line_to(context, bar->left + bar->width + 0.3 * font, y);
-        cairo_stroke(context);
-        ticks_format(&ticks, index, text, sizeof text);
-        draw_text(context, bar->left + bar->width + 0.6 * font, y, 0.0, 0.5, text);
-    }
 }
 
 /* A pointed end says that values lie beyond the bar. */
@@ -221,13 +169,13 @@ void annotate_bar(cairo_t *context, const struct layout *layout, const struct re
         draw_bar_end(context, &bar, bar.top, -0.9 * font, 1.0);
     if (range->minimum < range->low)
         draw_bar_end(context, &bar, bar.top + height, 0.9 * font, 0.0);
-    set_text(context, 0.9 * font, false);
+    render_text_style(context, 0.9 * font, false);
     cairo_set_line_width(context, fmax(1.0, font / 14.0));
     const double factor = find_prefix(data->unit, range).factor;
-    draw_bar_ticks(context, layout, &bar, factor * range->low, factor * range->high);
+    render_bar_ticks(context, font, &bar, factor * range->low, factor * range->high);
     char unit[48];
     format_unit(data, range, unit, sizeof unit);
-    draw_text(context, bar.left, bar.top - 1.3 * font, 0.0, 1.0, unit);
+    render_text(context, bar.left, bar.top - 1.3 * font, 0.0, 1.0, unit);
 }
 
 void annotate_title(cairo_t *context, const struct layout *layout, const char *title,
@@ -236,11 +184,11 @@ void annotate_title(cairo_t *context, const struct layout *layout, const char *t
     char text[512], unit[48];
     cairo_text_extents_t extents;
     const double font = layout->font, left = 1.2 * font, room = layout->width - 2.0 * left;
-    set_text(context, 1.25 * font, true);
+    render_text_style(context, 1.25 * font, true);
     cairo_text_extents(context, title, &extents);
     if (extents.x_advance > room)
         cairo_set_font_size(context, 1.25 * font * room / extents.x_advance);
-    draw_text(context, left, 1.9 * font, 0.0, 1.0, title);
+    render_text(context, left, 1.9 * font, 0.0, 1.0, title);
     format_unit(data, range, unit, sizeof unit);
     const double factor = find_prefix(data->unit, range).factor;
     if (data->values == NULL)
@@ -249,6 +197,6 @@ void annotate_title(cairo_t *context, const struct layout *layout, const char *t
         (void)snprintf(text, sizeof text, "%s [%s], from %.4g to %.4g;  t = %.4g s, %zu particles",
                        data->label, unit, factor * range->minimum, factor * range->maximum,
                        data->time, data->count);
-    set_text(context, font, false);
-    draw_text(context, left, 3.4 * font, 0.0, 1.0, text);
+    render_text_style(context, font, false);
+    render_text(context, left, 3.4 * font, 0.0, 1.0, text);
 }

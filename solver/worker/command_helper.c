@@ -7,6 +7,7 @@
 #include "scene/scene_json.h"
 #include "worker/check_answer.h"
 #include "worker/command.h"
+#include "worker/helper_chart.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -145,6 +146,7 @@ static const struct operation {
 } operations[] = {
     {"check", answer_check},   {"check_many", answer_check_many}, {"describe", answer_describe},
     {"schema", answer_schema}, {"render", answer_render},         {"slice", answer_slice},
+    {"chart", helper_chart},
 };
 enum { OPERATION_COUNT = sizeof operations / sizeof operations[0] };
 
@@ -162,7 +164,8 @@ static json_t *answer_question(const char *line, size_t length)
     }
     if (answer == NULL)
         answer = check_answer_error("/op", "unknown_value",
-                                    "'op' is check, check_many, describe, schema, render or slice");
+                                    "'op' is check, check_many, describe, schema, render, slice "
+                                    "or chart");
     json_decref(question);
     return answer;
 }
