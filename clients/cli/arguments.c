@@ -11,6 +11,7 @@
 const struct option_spec arguments_common[] = {
     {"json", NULL, "print JSON for machines"},
     {"server", "URL", "http://HOST:PORT or unix:PATH (default: $TALUS_SERVER, else the loopback)"},
+    {"token-file", "FILE", "holds the token for the server (default: $TALUS_TOKEN)"},
     {"help", NULL, "print this help"},
     {NULL, NULL, NULL},
 };

@@ -23,7 +23,7 @@ struct arguments {
     int operand_count;
 };
 
-/* Options that every sub-command has: --json, --server, --help. */
+/* Options that every sub-command has: --json, --server, --token-file, --help. */
 extern const struct option_spec arguments_common[];
 
 /* Reads arguments[1...]; strings are borrowed. False, with a message on stderr, for an option that

@@ -18,10 +18,9 @@ static bool starts_with(const char *text, const char *start)
     return strncmp(text, start, strlen(start)) == 0;
 }
 
-int connection_open(struct connection *connection, const char *server)
+int connection_open(struct connection *connection, const char *server, const char *token)
 {
     *connection = (struct connection){0};
-    const char *token = getenv("TALUS_TOKEN");
     if (server == NULL)
         server = getenv("TALUS_SERVER");
     if (server == NULL || server[0] == '\0')
@@ -34,11 +33,12 @@ int connection_open(struct connection *connection, const char *server)
     connection->server = strdup(server);
     connection->base = strdup(local ? "http://localhost" : server);
     connection->socket_path = local ? strdup(server + strlen("unix:")) : NULL;
-    connection->token = token == NULL ? NULL : strdup(token);
+    const bool with_token = token != NULL && token[0] != '\0';
+    connection->token = with_token ? strdup(token) : NULL;
     connection->curl = curl_easy_init();
     if (connection->server == NULL || connection->base == NULL ||
-        (local && connection->socket_path == NULL) ||
-        (token != NULL && connection->token == NULL) || connection->curl == NULL) {
+        (local && connection->socket_path == NULL) || (with_token && connection->token == NULL) ||
+        connection->curl == NULL) {
         (void)fprintf(stderr, "talus: out of memory\n");
         return EXIT_USAGE;
     }

@@ -38,9 +38,10 @@ struct http_reply {
     size_t length;
 };
 
-/* `server` as in --server; NULL: $TALUS_SERVER, else http://127.0.0.1:8465. The token is
- * $TALUS_TOKEN. Prints and returns an exit code on failure; close in any case. */
-int connection_open(struct connection *connection, const char *server);
+/* `server` as in --server; NULL: $TALUS_SERVER, else http://127.0.0.1:8465. The token is the first
+ * line of `token_file`; NULL: $TALUS_TOKEN. Prints and returns an exit code on failure; close in
+ * any case. */
+int connection_open(struct connection *connection, const char *server, const char *token);
 void connection_close(struct connection *connection);
 
 /* Returns true if an answer came (of any status); false, with a text in `problem`, if none did or

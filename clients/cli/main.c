@@ -2,6 +2,7 @@
 /* talus: the command-line client of talusd. */
 #include "subcommand.h"
 #include "talus/version.h"
+#include "token_source.h"
 
 #include <locale.h>
 #include <stdio.h>
@@ -23,7 +24,8 @@ static void print_usage(FILE *stream)
     (void)fprintf(stream,
                   "\ntalus COMMAND --help says more.\n"
                   "The server is --server URL, else $TALUS_SERVER, else http://127.0.0.1:8465; "
-                  "unix:PATH works too.\n$TALUS_TOKEN is the token, where the server wants one.\n"
+                  "unix:PATH works too.\nThe token, where the server wants one, is in the file of "
+                  "--token-file, else in $TALUS_TOKEN.\n"
                   "exit codes: 0 done, 1 the job failed, 2 usage, 3 the server refused, "
                   "4 no server\n");
 }
@@ -52,6 +54,7 @@ static int run_subcommand(const struct subcommand *subcommand, int argument_coun
 {
     struct arguments arguments;
     struct connection connection;
+    char token[TOKEN_SOURCE_SIZE];
     if (!arguments_read(&arguments, subcommand->options, argument_count, argument_texts))
         return EXIT_USAGE;
     if (arguments_has(&arguments, "help")) {
@@ -64,7 +67,9 @@ static int run_subcommand(const struct subcommand *subcommand, int argument_coun
                       subcommand->synopsis);
         return EXIT_USAGE;
     }
-    int code = connection_open(&connection, arguments_value(&arguments, "server"));
+    if (!token_source_read(arguments_value(&arguments, "token-file"), token))
+        return EXIT_USAGE;
+    int code = connection_open(&connection, arguments_value(&arguments, "server"), token);
     connection.json = arguments_has(&arguments, "json");
     if (code == EXIT_DONE)
         code = subcommand->run(&connection, &arguments);

@@ -63,7 +63,8 @@ static void find_unit(struct watch *watch)
     char problem[256];
     (void)snprintf(watch->unit, sizeof watch->unit, "N");
     char *path = job_path(watch->id, "/series", NULL);
-    const bool open = connection_open(&second, watch->connection->server) == EXIT_DONE;
+    const bool open =
+        connection_open(&second, watch->connection->server, watch->connection->token) == EXIT_DONE;
     const struct http_request request = {.method = "GET", .path = path};
     if (path != NULL && open &&
         connection_send(&second, &request, &reply, problem, sizeof problem) && reply.status == 200)

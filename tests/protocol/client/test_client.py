@@ -85,6 +85,36 @@ class CommandLine(ClientTest):
         self.assertEqual((method, path), ("GET", "/v1/jobs/..%2Fa%20b%3F"))
         self.assertEqual(headers["Authorization"], "Bearer secret")
 
+    def test_token_file(self):
+        server = self.serve(lambda handler: handler.send(200, JOB))
+        path = os.path.join(self.folder, "token")
+        environment = {"TALUS_TOKEN": "other"}
+        for content, mode, said in (("secret\nmore\n", 0o600, ""), ("secret", 0o600, ""),
+                                    ("s" * 512 + "\n", 0o644, "everyone can read")):
+            with open(path, "w", encoding="utf-8") as stream:
+                stream.write(content)
+            os.chmod(path, mode)
+            result = self.talus("show", "x", "--token-file", path, server=server,
+                                environment=environment)
+            self.expect(result, 0)
+            self.assertEqual(said in result.stderr, True)
+            self.assertEqual(said == "", result.stderr == "")
+            self.assertEqual(server.requests[-1][2]["Authorization"],
+                             "Bearer " + content.split("\n")[0])
+        self.talus("show", "x", server=server, environment={"TALUS_TOKEN": ""})
+        self.assertNotIn("Authorization", server.requests[-1][2])
+        count = len(server.requests)
+        for content in ("", "\n", "a b\n", "s" * 514):
+            with open(path, "w", encoding="utf-8") as stream:
+                stream.write(content)
+            self.assertEqual(self.talus("show", "x", "--token-file", path, server=server).returncode, 2)
+        for arguments, variables in ((["--token-file", path + "-none"], {}),
+                                     ([], {"TALUS_TOKEN": "a\nHost: evil"})):
+            result = self.talus("show", "x", *arguments, server=server, environment=variables)
+            self.assertEqual(result.returncode, 2)
+            self.assertNotIn("evil", result.stderr)
+        self.assertEqual(len(server.requests), count)
+
     def test_show_and_actions(self):
         server = self.serve(lambda handler: handler.send(
             204 if handler.command == "DELETE" else 200,
