@@ -3,7 +3,8 @@
 # Installs the Debian 12 packages that Talus is built from: as root directly, otherwise with sudo.
 # Does nothing, and needs no network, when they are all there.
 #   deploy/install-dependencies.sh [OPTION...]   what building, running and testing need, and
-#       --checks     clang, clang-format, clang-tidy, valgrind, qemu-user: what .ci/run uses
+#       --checks     clang, clang-format, clang-tidy, valgrind, qemu-user, nginx, caddy: what .ci/run
+#                    uses (Debian starts the two servers: `systemctl disable --now nginx caddy`)
 #       --aarch64    the cross compiler and libraries of the preset aarch64 (adds the architecture
 #                    arm64 to dpkg)
 #       --coverage   gcovr
@@ -18,7 +19,10 @@ packages=(
 add_architecture=
 for option in "$@"; do
     case "$option" in
-    --checks) packages+=(clang libomp-dev clang-format clang-tidy valgrind qemu-user) ;;
+    --checks)
+        packages+=(clang libomp-dev clang-format clang-tidy valgrind qemu-user
+            nginx-light caddy openssl)
+        ;;
     --aarch64)
         add_architecture=arm64
         packages+=(gcc-aarch64-linux-gnu libc6-dev-arm64-cross qemu-user

@@ -28,7 +28,8 @@ class Event:
 class Stream:
     """GET path as an event stream. Iterating gives events until the server ends the stream."""
 
-    def __init__(self, port, path, last_id=None, receive_buffer=None, timeout=30.0, token=None):
+    def __init__(self, port, path, last_id=None, receive_buffer=None, timeout=30.0, token=None,
+                 host=None):
         self.comments = []
         self.ended = False
         self.socket = socket.socket()
@@ -36,7 +37,9 @@ class Stream:
             self.socket.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, receive_buffer)
         self.socket.settimeout(timeout * PATIENCE)
         self.socket.connect(("127.0.0.1", port))
-        lines = [f"GET {path} HTTP/1.1", f"Host: 127.0.0.1:{port}", "Accept: text/event-stream"]
+        self.socket = self.wrap(self.socket)
+        lines = [f"GET {path} HTTP/1.1", f"Host: {host or f'127.0.0.1:{port}'}",
+                 "Accept: text/event-stream"]
         if last_id is not None:
             lines.append(f"Last-Event-ID: {last_id}")
         if token is not None:
@@ -46,6 +49,10 @@ class Stream:
         self.raw = self._bytes()
         self.status = None
         self.headers = {}
+
+    def wrap(self, plain):
+        """For a stream through something else."""
+        return plain
 
     def open(self):
         """Reads the answer's head; done at the first event if not asked for before."""
