@@ -1,15 +1,19 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* What a reader of events reads: the story of one job, or the feed of all. */
+/* What a reader of events reads: the story of one job or study, or the feed of all. */
 #ifndef TALUS_EVENT_SOURCE_H
 #define TALUS_EVENT_SOURCE_H
 
 #include "event_steps.h"
 #include "feed.h"
+#include "studies/study_stream.h"
 
-/* Owns what it reads from; `of_all` tells which. */
+enum event_source_kind { SOURCE_JOB, SOURCE_STUDY, SOURCE_ALL };
+
+/* Owns what it reads from, which the kind tells. */
 struct event_source {
-    bool of_all;
+    enum event_source_kind kind;
     struct event_stream stream;
+    struct study_stream study;
     struct feed_reader reader;
 };
 

@@ -164,7 +164,7 @@ static void *events_main(void *argument)
         struct subscription *first = events->first;
         bool of_all = false;
         for (const struct subscription *own = first; own != NULL; own = own->next)
-            of_all = of_all || own->source.of_all;
+            of_all = of_all || own->source.kind == SOURCE_ALL;
         (void)pthread_mutex_unlock(&events->mutex);
         /* Readers are only added at the head and only removed by this thread. */
         double now = moment_monotonic();

@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* GET /v1/jobs/ID/events and /v1/events */
+/* GET /v1/jobs/ID/events, /v1/studies/ID/events and /v1/events */
 #include "events.h"
 #include "request.h"
 #include "service.h"
+#include "studies/study_request.h"
 
 #include <errno.h>
 #include <stdlib.h>
@@ -31,6 +32,13 @@ const struct operation operation_job_events = {
             RESPONSE_END},
 };
 
+/* Tells a browser's EventSource not to connect again. */
+static void reply_nothing_left(struct request *request)
+{
+    reply_empty(&request->reply, MHD_HTTP_NO_CONTENT);
+    request->reply.close = true;
+}
+
 enum handled handle_job_events(struct request *request)
 {
     struct talus_error error = {0};
@@ -57,9 +65,7 @@ enum handled handle_job_events(struct request *request)
     } else {
         (void)event_stream_fill(stream);
         if (stream->done && stream->out.length == 0) {
-            /* Tells a browser's EventSource not to connect again. */
-            reply_empty(&request->reply, MHD_HTTP_NO_CONTENT);
-            request->reply.close = true;
+            reply_nothing_left(request);
             event_stream_close(stream);
         } else {
             events_subscribe(request->service->events, request, &source);
@@ -108,10 +114,62 @@ static bool row_parse(struct feed *feed, const char *text, int64_t *row)
            *row <= feed_last(feed);
 }
 
+const struct operation operation_study_events = {
+    .summary = "What happens to a study and its rows, from its start, as Server-Sent Events",
+    .path = operation_study_path,
+    .query = (const struct json_field[]){{.key = "after",
+                                          .kind = FIELD_TEXT,
+                                          .optional = true,
+                                          .meaning = "id of the event behind which to go on; "
+                                                     "'latest': only what happens from now on"},
+                                         OPERATION_END},
+    .headers = (const struct json_field[]){{.key = "Last-Event-ID",
+                                            .kind = FIELD_TEXT,
+                                            .optional = true,
+                                            .meaning = "the same, as browsers send it"},
+                                           OPERATION_END},
+    .responses =
+        (const struct response[]){
+            {.status = 200,
+             .type = "text/event-stream",
+             .meaning = "events state of the study, row of its rows, gap, done; the last ends the "
+                        "stream"},
+            {.status = 204, .meaning = "nothing is left to tell, now or ever"},
+            RESPONSE_END},
+};
+
+enum handled handle_study_events(struct request *request)
+{
+    struct event_source source = {.kind = SOURCE_STUDY};
+    struct study_stream *stream = &source.study;
+    struct study study;
+    int64_t row = 0;
+    const char *id = request_header(request, "Last-Event-ID");
+    if (id == NULL)
+        id = target_query(&request->target, "after");
+    if (!row_parse(events_feed(request->service->events), id, &row)) {
+        reply_problem(&request->reply, MHD_HTTP_UNPROCESSABLE_CONTENT, "event_id", request->raw,
+                      NULL, "this is not the id of an event");
+        return HANDLED;
+    }
+    if (!study_request_read(request, false, &study))
+        return HANDLED;
+    study_stream_open(stream, request->service->store, study.id, row);
+    study_stream_fill(stream);
+    if (study.state != STUDY_RUNNING && stream->out.length == 0) {
+        study_stream_close(stream);
+        reply_nothing_left(request);
+    } else {
+        events_subscribe(request->service->events, request, &source);
+    }
+    study_release(&study);
+    return HANDLED;
+}
+
 enum handled handle_events(struct request *request)
 {
     struct feed *feed = events_feed(request->service->events);
-    struct event_source source = {.of_all = true};
+    struct event_source source = {.kind = SOURCE_ALL};
     int64_t row = 0;
     const char *id = request_header(request, "Last-Event-ID");
     if (id == NULL)

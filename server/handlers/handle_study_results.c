@@ -30,7 +30,8 @@ enum handled handle_study_results(struct request *request)
     if (!study_request_read(request, false, &study))
         return HANDLED;
     enum talus_status status =
-        (csv ? study_results_csv : study_results_json)(request->service, &study, &text, &error);
+        csv ? study_results_csv(request->service, &study, &text, &error)
+            : study_results_json(request->service, &study, STUDY_RESULTS_ASKED, &text, &error);
     if (status == TALUS_OK) {
         reply_text(&request->reply, MHD_HTTP_OK,
                    csv ? "text/csv; charset=utf-8; header=present" : "application/json", &text);

@@ -14,8 +14,6 @@ enum { METRICS_MAX = 64 };
 static const struct json_field metric_name = {.kind = FIELD_TEXT,
                                               .most = SUBMISSION_NAME_CHARACTERS};
 static const struct json_field anything = {.kind = FIELD_ANY};
-static const char *const scales[] = {"x", "y", "xy", NULL};
-
 static const struct json_field chart_fields[] = {
     {.key = "x", .kind = FIELD_TEXT, .offset = FIELD_NOWHERE, .meaning = "parameter or metric"},
     {.key = "y", .kind = FIELD_TEXT, .offset = FIELD_NOWHERE, .meaning = "parameter or metric"},
@@ -24,12 +22,16 @@ static const struct json_field chart_fields[] = {
      .optional = true,
      .offset = FIELD_NOWHERE,
      .meaning = "parameter: a line for each value"},
-    {.key = "log",
+    {.key = "z",
      .kind = FIELD_TEXT,
      .optional = true,
-     .words = scales,
      .offset = FIELD_NOWHERE,
-     .meaning = "logarithmic axes"},
+     .meaning = "metric: contours over the parameters x and y"},
+    {.key = "log",
+     .kind = FIELD_ANY,
+     .optional = true,
+     .offset = FIELD_NOWHERE,
+     .meaning = "logarithmic axes: true, x, y, xy or a list of these"},
     {.key = NULL},
 };
 

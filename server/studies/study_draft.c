@@ -106,13 +106,35 @@ static void axis_read(const json_t *chart, const char *key, struct study_draft *
         wanted_add(draft, name);
 }
 
+/* Names of axes, together or in a list. */
+static bool log_holds(const json_t *log)
+{
+    size_t index;
+    const json_t *axis;
+    if (log == NULL || json_is_boolean(log))
+        return true;
+    if (json_is_string(log))
+        return json_string_length(log) > 0 &&
+               strspn(json_string_value(log), "xyz") == json_string_length(log);
+    bool good = json_is_array(log);
+    json_array_foreach(log, index, axis)
+    {
+        good = good && json_is_string(axis) && json_string_length(axis) == 1 && log_holds(axis);
+    }
+    return good;
+}
+
 static void chart_read(const json_t *body, struct study_draft *draft, json_t *errors)
 {
     const json_t *chart = json_object_get(body, "chart");
     struct talus_error error = {0};
     axis_read(chart, "x", draft, errors);
     axis_read(chart, "y", draft, errors);
+    axis_read(chart, "z", draft, errors);
     axis_read(chart, "series", draft, errors);
+    if (json_is_object(chart) && !log_holds(json_object_get(chart, "log")))
+        issue_add(errors, "/chart/log", "type", json_object_get(chart, "log"), NULL,
+                  "true, false, \"x\", \"y\", \"xy\" or a list of axes is wanted");
     if (job_json_set(&draft->study.chart, chart, &error) != TALUS_OK)
         issue_add(errors, "/chart", "memory", NULL, NULL, "out of memory");
 }

@@ -20,12 +20,13 @@ static void table_release(struct table *table)
     json_decref(table->metrics);
 }
 
-static struct table table_begin(const struct study *study, struct text *text)
+static struct table table_begin(const struct study *study, enum study_results_metrics which,
+                                struct text *text)
 {
+    const char *metrics = which == STUDY_RESULTS_WANTED ? study->wanted : study->metrics;
     return (struct table){.text = text,
                           .names = json_loads(study->names == NULL ? "[]" : study->names, 0, NULL),
-                          .metrics =
-                              json_loads(study->metrics == NULL ? "[]" : study->metrics, 0, NULL)};
+                          .metrics = json_loads(metrics == NULL ? "[]" : metrics, 0, NULL)};
 }
 
 static void quoted_add(struct text *text, const char *value)
@@ -68,10 +69,11 @@ static bool row_json(const struct study_row *row, void *context)
 }
 
 enum talus_status study_results_json(struct service *service, const struct study *study,
-                                     struct text *text, struct talus_error *error)
+                                     enum study_results_metrics which, struct text *text,
+                                     struct talus_error *error)
 {
     const struct row_filter filter = {.state = ROW_STATE_COUNT};
-    struct table table = table_begin(study, text);
+    struct table table = table_begin(study, which, text);
     text_print(
         text, "{\"study\":\"%s\",\"state\":\"%s\",\"parameters\":%s,\"metrics\":%s,\"rows\":[",
         study->id, study_state_name((enum study_state)study->state),
@@ -145,7 +147,7 @@ enum talus_status study_results_csv(struct service *service, const struct study 
                                     struct text *text, struct talus_error *error)
 {
     const struct row_filter filter = {.state = ROW_STATE_COUNT};
-    struct table table = table_begin(study, text);
+    struct table table = table_begin(study, STUDY_RESULTS_ASKED, text);
     text_add_string(text, "row,state,job,reason,reused");
     columns_add(text, table.names, NULL);
     columns_add(text, table.metrics, NULL);

@@ -67,6 +67,15 @@ def refuse(pointer, code, detail):
     return {"ok": False, "errors": [{"pointer": pointer, "code": code, "detail": detail}]}
 
 
+def chart(question):
+    """Says what it was asked to draw."""
+    if not question["rows"][0]["metrics"]:
+        return refuse("/rows", "required", "no metrics")
+    shown = json.dumps({key: question[key] for key in ("chart", "kind", "title")}, sort_keys=True)
+    return {"ok": True, "svg": f"<svg xmlns='http://www.w3.org/2000/svg'><!-- {shown} "
+                               f"{len(question['rows'])} rows --></svg>"}
+
+
 def picture(width, height):
     """A grey PNG."""
     def chunk(name, data):
@@ -130,6 +139,8 @@ def serve(side):
             answer = check(question, side)
         elif operation == "check_many":
             answer = check_many(question, side)
+        elif operation == "chart":
+            answer = chart(question)
         elif operation == "render":
             answer = render(question, side)
         elif operation == "schema":

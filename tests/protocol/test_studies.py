@@ -162,6 +162,21 @@ class Life(StudyTest):
             self.assertEqual(float(line["stiffness"]), row["parameters"]["stiffness"])
             self.assertEqual(float(line["probe.runout.max"]), row["metrics"]["probe.runout.max"])
 
+    def test_chart(self):
+        chart = {"x": "duration", "y": "probe.runout.time_of_max", "series": "stiffness",
+                 "log": "y"}
+        study, _ = self.run_study(study_body(GRID, chart=chart))
+        reply = self.client.get(f"/v1/studies/{study['id']}/chart.svg")
+        self.assertEqual(reply.status, 200, reply)
+        self.assertEqual(reply.headers["content-type"], "image/svg+xml")
+        self.assertIn(b'"x": "duration"', reply.body)
+        self.assertIn(b"6 rows", reply.body)
+        self.assertEqual(study["chart"], chart)
+        plain, _ = self.run_study(study_body(GRID))
+        problem = self.assert_problem(
+            self.client.get(f"/v1/studies/{plain['id']}/chart.svg"), 404)
+        self.assertIn("chart", problem["detail"])
+
     def test_list_pages_and_states(self):
         made = [self.submit(study_body(GRID, name=f"n{index}"))["id"] for index in range(3)]
         for study_id in made:
@@ -296,6 +311,8 @@ class Refusals(StudyTest):
         self.refused(study_body(GRID, chart={"x": "nothing", "y": "steps"}), "unknown_value",
                      "/chart/x")
         self.refused(study_body(GRID, chart={"x": "duration"}), "required", "/chart/y")
+        self.refused(study_body(GRID, chart={"x": "duration", "y": "steps", "log": "w"}), "type",
+                     "/chart/log")
 
     def test_one_bad_row_refuses_the_study_and_is_named(self):
         """The fake helper refuses a scene whose duration is negative."""
