@@ -26,6 +26,7 @@ struct attempt *attempt_create(const struct job *job, const char *folder, const 
     attempt->wall_begin = moment_monotonic() - job->wall_used - (elapsed > 0 ? elapsed : 0);
     attempt->other_boot = job->boot == NULL || strcmp(job->boot, boot) != 0;
     attempt->tail.descriptor = -1;
+    attempt->end = -1;
     (void)attempt_update(attempt, job);
     if (attempt->id != NULL && attempt->folder != NULL)
         return attempt;
@@ -36,6 +37,8 @@ struct attempt *attempt_create(const struct job *job, const char *folder, const 
 void attempt_destroy(struct attempt *attempt)
 {
     event_tail_close(&attempt->tail);
+    if (attempt->end >= 0)
+        (void)close(attempt->end);
     json_decref(attempt->progress);
     json_decref(attempt->last);
     free(attempt->orders);

@@ -21,6 +21,7 @@ struct attempt {
     bool orders_pending;  /* the worker has not been told yet */
     bool other_boot;      /* it was started before the machine was */
     pid_t pid;            /* 0: adopted, known by its lock only */
+    int end;              /* descriptor that becomes readable when the child ends; -1: none */
     bool ended;           /* our child has ended with wait_status */
     int wait_status;
     bool cancel_requested;

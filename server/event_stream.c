@@ -113,9 +113,19 @@ static const char *series_event(const char *name)
     return strncmp(name, "energy.", 7) == 0 ? "energy" : "probe";
 }
 
-/* One column of some rows as {"name","time","value"}. */
+/* A column of rows as the members of a JSON array. */
+static void numbers_add(struct text *text, const double *values, size_t row_count, size_t stride)
+{
+    for (size_t row = 0; row < row_count; row++) {
+        if (row > 0)
+            text_add(text, ",", 1);
+        text_add_number(text, values[row * stride]);
+    }
+}
+
+/* One column of some rows as {"name","time","value"}; `times` is the text of the times. */
 static void column_write(struct event_stream *stream, struct event_id id, size_t column,
-                         const double *values, size_t row_count)
+                         const struct text *times, const double *values, size_t row_count)
 {
     const struct history_reader *history = &stream->history;
     if (id_known(stream, id))
@@ -124,15 +134,9 @@ static void column_write(struct event_stream *stream, struct event_id id, size_t
     json_t *name = json_string(history->columns[column].name);
     char *quoted = json_dumps(name, JSON_ENCODE_ANY);
     text_print(&data, "{\"name\":%s,\"time\":[", quoted == NULL ? "null" : quoted);
-    for (size_t row = 0; row < row_count; row++) {
-        text_add_string(&data, row == 0 ? "" : ",");
-        text_add_number(&data, values[row * history->column_count]);
-    }
+    text_add(&data, times->data, times->length);
     text_add_string(&data, "],\"value\":[");
-    for (size_t row = 0; row < row_count; row++) {
-        text_add_string(&data, row == 0 ? "" : ",");
-        text_add_number(&data, values[row * history->column_count + column]);
-    }
+    numbers_add(&data, values + column, row_count, history->column_count);
     text_add_string(&data, "]}");
     if (!data.failed)
         event_write(stream, id, series_event(history->columns[column].name), data.data);
@@ -151,8 +155,14 @@ static void span_step(struct event_stream *stream)
     size_t count =
         values == NULL ? 0 : history_reader_read(history, stream->span_row, wanted, values);
     struct event_id id = stream->span_next;
-    for (size_t column = 1; column < history->column_count && count > 0; column++, id.number++)
-        column_write(stream, id, column, values, count);
+    struct text times = {0};
+    numbers_add(&times, values, count, history->column_count);
+    if (times.failed)
+        stream->out.failed = true;
+    for (size_t column = 1; column < history->column_count && times.length > 0;
+         column++, id.number++)
+        column_write(stream, id, column, &times, values, count);
+    text_release(&times);
     free(values);
     /* Rows that a resume has cut since are void: a rewind follows. */
     stream->span_row = count < wanted ? stream->span_end : stream->span_row + (int64_t)count;

@@ -18,10 +18,14 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/epoll.h>
 #include <sys/eventfd.h>
+#include <sys/pidfd.h>
 #include <unistd.h>
 
-enum { TICK_MILLISECONDS = 50, CANDIDATES_MAX = 64 };
+/* Between two looks: at nothing; at workers that run; at one that begins, ends or is to end. */
+enum { IDLE_MILLISECONDS = 1000, CALM_MILLISECONDS = 250, TICK_MILLISECONDS = 50 };
+enum { CANDIDATES_MAX = 64 };
 static const double disk_check_seconds = 0.5;
 static const double spawn_retry_seconds = 1;
 
@@ -31,6 +35,7 @@ struct supervisor {
     bool started;
     atomic_bool stopping;
     int wake;              /* eventfd */
+    int ends;              /* epoll over `end` of the attempts, each told once */
     pthread_mutex_t mutex; /* of the list of attempts and their progress */
     struct attempt *first;
     struct scheduler scheduler;
@@ -50,8 +55,11 @@ enum talus_status supervisor_create(struct supervisor **result, struct service *
     supervisor->empty_at = UINT64_MAX;
     (void)pthread_mutex_init(&supervisor->mutex, NULL);
     supervisor->wake = eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK);
-    if (supervisor->wake >= 0)
+    supervisor->ends = epoll_create1(EPOLL_CLOEXEC);
+    if (supervisor->wake >= 0 && supervisor->ends >= 0)
         return TALUS_OK;
+    if (supervisor->wake >= 0)
+        (void)close(supervisor->wake);
     free(supervisor);
     *result = NULL;
     return talus_error_set(error, TALUS_INTERNAL, "eventfd", "", "cannot make an eventfd");
@@ -81,6 +89,18 @@ uint64_t supervisor_progress_count(const struct supervisor *supervisor)
     return atomic_load(&supervisor->progress_count);
 }
 
+/* Has the thread woken when a child ends; where that fails it looks often instead. */
+static void end_watch(struct supervisor *supervisor, struct attempt *attempt)
+{
+    struct epoll_event event = {.events = EPOLLIN | EPOLLONESHOT};
+    attempt->end = pidfd_open(attempt->pid, 0);
+    if (attempt->end >= 0 &&
+        epoll_ctl(supervisor->ends, EPOLL_CTL_ADD, attempt->end, &event) != 0) {
+        (void)close(attempt->end);
+        attempt->end = -1;
+    }
+}
+
 /* Adds an attempt of a job that runs, with its child or (0) adopted. */
 static bool attempt_add(struct supervisor *supervisor, const struct job *job, pid_t pid)
 {
@@ -91,6 +111,8 @@ static bool attempt_add(struct supervisor *supervisor, const struct job *job, pi
     if (attempt == NULL)
         return false;
     attempt->pid = pid;
+    if (pid > 0)
+        end_watch(supervisor, attempt);
     (void)pthread_mutex_lock(&supervisor->mutex);
     attempt->next = supervisor->first;
     supervisor->first = attempt;
@@ -386,15 +408,41 @@ static void jobs_start(struct supervisor *supervisor, double now)
     }
 }
 
+/* Whether nothing is expected of an attempt that would not wake the thread. */
+static bool attempt_is_calm(const struct attempt *attempt)
+{
+    return attempt->end >= 0 && !attempt->ended && attempt->worker_started &&
+           !attempt->orders_pending && !attempt->cancel_requested && attempt->stop_reason == NULL &&
+           attempt->last == NULL;
+}
+
+/* Waits until it is time to look again. */
+static void supervisor_wait(struct supervisor *supervisor)
+{
+    struct pollfd ready[] = {{.fd = supervisor->wake, .events = POLLIN},
+                             {.fd = supervisor->ends, .events = POLLIN}};
+    struct epoll_event ended[16];
+    uint64_t count;
+    int milliseconds = supervisor->first == NULL ? IDLE_MILLISECONDS : CALM_MILLISECONDS;
+    for (const struct attempt *attempt = supervisor->first; attempt != NULL;
+         attempt = attempt->next) {
+        if (!attempt_is_calm(attempt))
+            milliseconds = TICK_MILLISECONDS;
+    }
+    if (poll(ready, 2, milliseconds) <= 0)
+        return;
+    if ((ready[0].revents & POLLIN) != 0 && read(supervisor->wake, &count, sizeof count) < 0 &&
+        errno != EAGAIN)
+        (void)fprintf(stderr, "talusd: cannot read the wake-up\n");
+    if ((ready[1].revents & POLLIN) != 0)
+        (void)epoll_wait(supervisor->ends, ended, sizeof ended / sizeof ended[0], 0);
+}
+
 static void *supervisor_main(void *argument)
 {
     struct supervisor *supervisor = argument;
     while (!atomic_load(&supervisor->stopping)) {
-        struct pollfd ready = {.fd = supervisor->wake, .events = POLLIN};
-        uint64_t count;
-        if (poll(&ready, 1, supervisor->first == NULL ? 1000 : TICK_MILLISECONDS) > 0 &&
-            read(supervisor->wake, &count, sizeof count) < 0 && errno != EAGAIN)
-            (void)fprintf(stderr, "talusd: cannot read the wake-up\n");
+        supervisor_wait(supervisor);
         double now = moment_monotonic();
         struct attempt *next;
         attempt_load_note(supervisor->first, now);
@@ -428,6 +476,7 @@ void supervisor_destroy(struct supervisor *supervisor)
     while (supervisor->first != NULL)
         attempt_unlink(supervisor, supervisor->first);
     (void)close(supervisor->wake);
+    (void)close(supervisor->ends);
     (void)pthread_mutex_destroy(&supervisor->mutex);
     free(supervisor);
 }

@@ -66,6 +66,10 @@ void text_add_number(struct text *text, double value)
         text_add_string(text, "null");
         return;
     }
+    if (value == 0 && !signbit(value)) {
+        text_add(text, "0", 1);
+        return;
+    }
     for (int digits = 15; digits <= 17; digits++) {
         (void)snprintf(number, sizeof number, "%.*g", digits, value);
         if (strtod(number, NULL) == value)
