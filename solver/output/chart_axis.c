@@ -9,7 +9,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { LABEL_SIZE = 1100 };
+enum { LABEL_SIZE = 1100, LABEL_PART = 512 };
 
 void chart_scale_add(struct chart_scale *scale, double value)
 {
@@ -149,6 +149,16 @@ double chart_frame_y(const struct chart_frame *frame, double value)
     return frame->plot.top + frame->plot.height * (1.0 - chart_scale_share(&frame->y_scale, value));
 }
 
+int chart_text_length(const char *text, int most)
+{
+    int length = 0;
+    while (length < most && text[length] != '\0')
+        length++;
+    while (length > 0 && ((unsigned char)text[length] & 0xc0U) == 0x80U)
+        length--;
+    return length;
+}
+
 /* The ticks of an axis: of texts, one for each. */
 static size_t axis_ticks(const struct chart_quantity *quantity, const struct chart_scale *scale,
                          int wanted, struct chart_tick ticks[CHART_TICK_MAX])
@@ -160,13 +170,9 @@ static size_t axis_ticks(const struct chart_quantity *quantity, const struct cha
     size_t stride = words->count / (size_t)(wanted < 1 ? 1 : wanted) + 1;
     for (size_t index = 0; index < count; index++) {
         ticks[index] = (struct chart_tick){.value = (double)index, .named = index % stride == 0};
-        (void)snprintf(ticks[index].text, sizeof ticks[index].text, "%.28s",
-                       words->items[index].text);
-        size_t length = strlen(ticks[index].text);
-        while (length > 0 && strlen(words->items[index].text) > length &&
-               ((unsigned char)words->items[index].text[length] & 0xc0U) == 0x80U)
-            length--; /* not within a letter */
-        ticks[index].text[length] = '\0';
+        const char *word = words->items[index].text;
+        (void)snprintf(ticks[index].text, sizeof ticks[index].text, "%.*s",
+                       chart_text_length(word, 28), word);
     }
     return count;
 }
@@ -311,15 +317,16 @@ void chart_quantity_unit(const struct chart_quantity *quantity, char *text, size
 {
     const char *unit = quantity->unit, *prefix = quantity->prefix.name;
     const bool plain = unit == NULL || strcmp(unit, "1") == 0;
-    (void)snprintf(text, size, "%s%.512s", plain || prefix == NULL ? "" : prefix,
-                   plain ? "" : unit);
+    (void)snprintf(text, size, "%s%.*s", plain || prefix == NULL ? "" : prefix,
+                   plain ? 0 : chart_text_length(unit, LABEL_PART), plain ? "" : unit);
 }
 
 void chart_quantity_label(const struct chart_quantity *quantity, char *text, size_t size)
 {
     char shown[540];
     chart_quantity_unit(quantity, shown, sizeof shown);
-    (void)snprintf(text, size, "%.512s%s%s%s", quantity->name, shown[0] == '\0' ? "" : " [", shown,
+    (void)snprintf(text, size, "%.*s%s%s%s", chart_text_length(quantity->name, LABEL_PART),
+                   quantity->name, shown[0] == '\0' ? "" : " [", shown,
                    shown[0] == '\0' ? "" : "]");
 }
 
@@ -338,13 +345,10 @@ void chart_text_fitted(cairo_t *context, double x, double y, double share_x, dou
         render_text(context, x, y, share_x, share_y, text);
         return;
     }
-    size_t length = strlen(text);
-    length = length < LABEL_SIZE ? length : LABEL_SIZE - 1;
-    memcpy(cut, text, length);
-    do { /* whole letters from the end, until it fits with an ellipsis */
-        do
-            length -= length > 0;
-        while (length > 0 && ((unsigned char)text[length] & 0xc0U) == 0x80U);
+    int length = chart_text_length(text, LABEL_SIZE - 1);
+    memcpy(cut, text, (size_t)length);
+    do { /* letters from the end, until it fits with an ellipsis */
+        length = chart_text_length(text, length > 0 ? length - 1 : 0);
         memcpy(cut + length, "\xe2\x80\xa6", 4);
         cairo_text_extents(context, cut, &extents);
     } while (length > 0 && extents.x_advance > room);

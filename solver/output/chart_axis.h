@@ -57,6 +57,9 @@ double chart_frame_left(const struct chart_frame *frame, cairo_t *context);
 void chart_bar_decades(cairo_t *context, double font, const struct rectangle *bar,
                        const struct chart_scale *scale);
 
+/* How many bytes of a text, at most `most`, are whole letters: half of one is no UTF-8. */
+int chart_text_length(const char *text, int most);
+
 /* The unit with its prefix, empty without one; and "name [unit]". */
 void chart_quantity_unit(const struct chart_quantity *quantity, char *text, size_t size);
 void chart_quantity_label(const struct chart_quantity *quantity, char *text, size_t size);

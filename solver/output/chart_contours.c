@@ -198,23 +198,26 @@ static void draw_heading(const struct chart *chart, size_t series, struct rectan
                          double font, cairo_t *context)
 {
     const struct bands bands = find_bands(chart, series);
+    const struct chart_words *words = &chart->series.words;
+    const char *x = chart->x.name, *y = chart->y.name, *split = chart->series.name;
     char text[2000] = "", unit[540];
     int length = 0;
-    if (chart->series.words.count > 0)
-        length = snprintf(text, sizeof text, "%.400s = %.400s", chart->series.name,
-                          chart->series.words.items[series].text);
     chart_quantity_unit(&chart->z, unit, sizeof unit);
+    if (words->count > 0) {
+        const char *value = words->items[series].text;
+        length = snprintf(text, sizeof text, "%.*s = %.*s:  ", chart_text_length(split, 300), split,
+                          chart_text_length(value, 300), value);
+    }
     if (length < 0)
         return;
     if (bands.highest == NULL)
-        (void)snprintf(text + length, sizeof text - (size_t)length, "%sno results yet",
-                       length > 0 ? ":  " : "");
+        (void)snprintf(text + length, sizeof text - (size_t)length, "no results yet");
     else
         (void)snprintf(text + length, sizeof text - (size_t)length,
-                       "%slargest %.4g%s%s, at %.200s %.4g and %.200s %.4g",
-                       length > 0 ? ":  " : "", bands.highest->z, unit[0] == '\0' ? "" : " ", unit,
-                       chart->x.name, bands.highest->x, chart->y.name, bands.highest->y);
-    render_text_style(context, font, chart->series.words.count > 0);
+                       "largest %.4g%s%s, at %.*s %.4g and %.*s %.4g", bands.highest->z,
+                       unit[0] == '\0' ? "" : " ", unit, chart_text_length(x, 200), x,
+                       bands.highest->x, chart_text_length(y, 200), y, bands.highest->y);
+    render_text_style(context, font, words->count > 0);
     chart_text_fitted(context, area.left, area.top, 0.0, 0.0, area.width, font, text);
 }
 

@@ -4,7 +4,7 @@
 #include <math.h>
 #include <string.h>
 
-enum { TITLE_BYTES_MAX = 1000, NAME_BYTES_MAX = 1000 };
+enum { TEXT_BYTES_MAX = 4096 };
 
 static enum talus_status wrong_type(struct talus_error *error, const char *pointer,
                                     const char *wanted)
@@ -38,7 +38,7 @@ static enum talus_status read_text(const json_t *object, const char *key, const 
     *text = json_string_value(value);
     if (value == NULL && required)
         return talus_error_set(error, TALUS_INVALID, "required", pointer, "'%s' is required", key);
-    if (value != NULL && (*text == NULL || json_string_length(value) > NAME_BYTES_MAX))
+    if (value != NULL && (*text == NULL || json_string_length(value) > TEXT_BYTES_MAX))
         return wrong_type(error, pointer, "a short text");
     return TALUS_OK;
 }
@@ -157,7 +157,7 @@ static enum talus_status read_units(const json_t *units, struct talus_error *err
         return wrong_type(error, "/units", "an object");
     json_object_foreach((json_t *)units, name, unit)
     {
-        if (!json_is_string(unit) || json_string_length(unit) > NAME_BYTES_MAX)
+        if (!json_is_string(unit) || json_string_length(unit) > TEXT_BYTES_MAX)
             return wrong_type(error, "/units", "an object of short texts");
     }
     return TALUS_OK;

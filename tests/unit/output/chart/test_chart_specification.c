@@ -252,6 +252,45 @@ static void test_mutations(void **state)
     assert_true(drawn > 100 && refused > 100);
 }
 
+/* Names of up to 1200 letters of one to four bytes, wherever they are cut. */
+static void test_long_names(void **state)
+{
+    static const char *const letters[] = {"a", "\xcf\x86", "\xe2\x82\xac", "\xf0\x9f\x98\x80"};
+    static const char *const words[] = {"x", "y", "z", "series", NULL};
+    (void)state;
+    for (size_t letter = 0; letter < 4; letter++) {
+        for (size_t shift = 0; shift < 4; shift++) {
+            char name[4 * 900 + 8] = "";
+            json_t *row = parse(ROW("", "succeeded", "{}")), *chart = json_object();
+            for (size_t index = 0; index < shift; index++)
+                (void)strcat(name, "b");
+            for (size_t index = 0; index < 900; index++)
+                memcpy(name + shift + index * strlen(letters[letter]), letters[letter],
+                       strlen(letters[letter]) + 1);
+            for (size_t index = 0; words[index] != NULL; index++) {
+                char longer[sizeof name + 8];
+                const bool text = index == 3;
+                (void)snprintf(longer, sizeof longer, "%.1s%s", words[index], name);
+                (void)json_object_set_new(chart, words[index], json_string(longer));
+                (void)json_object_set_new(
+                    json_object_get(row, index == 2 ? "metrics" : "parameters"), longer,
+                    text ? json_string(name) : json_integer(3));
+            }
+            json_t *specification = json_pack("{s:[O, O], s:O, s:s, s:{s:s}}", "rows", row, row,
+                                              "chart", chart, "title", name, "units", "u", name);
+            if (!draw(specification))
+                fail_msg("letter %zu, shift %zu", letter, shift);
+            (void)json_object_del(chart, "z");
+            (void)json_object_set(chart, "x", json_object_get(chart, "series"));
+            if (!draw(specification))
+                fail_msg("lines, letter %zu, shift %zu", letter, shift);
+            json_decref(specification);
+            json_decref(chart);
+            json_decref(row);
+        }
+    }
+}
+
 /* A long study: a thousand lines of ten, and more scattered points than are triangulated. */
 static void test_many_rows(void **state)
 {
@@ -279,6 +318,7 @@ int main(void)
         cmocka_unit_test(test_rows_are_counted), cmocka_unit_test(test_units),
         cmocka_unit_test(test_mistakes),         cmocka_unit_test(test_odd_numbers),
         cmocka_unit_test(test_mutations),        cmocka_unit_test(test_many_rows),
+        cmocka_unit_test(test_long_names),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
