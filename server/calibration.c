@@ -18,9 +18,8 @@ enum { RATIOS_MAX = 256, NAMES_MAX = 8 };
 static const double cost_runs = 20.0, wall_runs = 10.0;
 static const double foreign_runs = 3.0;   /* that those of another build are worth */
 static const double quality_runs = 100.0; /* of the recent share */
-/* Shorter runs say nothing of a method, or of how long one waits for a core: they wait for the
- * disk [s]. */
-static const double processor_least = 0.02, wall_least = 0.1;
+/* Shorter runs say nothing of a method [s]. */
+static const double processor_least = 0.02;
 
 struct calibration {
     struct store *store;
@@ -209,7 +208,7 @@ static void learn_times(struct calibration *calibration, struct lesson *lesson, 
     for (size_t index = 0; index < json_array_size(names) && index < NAMES_MAX; index++)
         lesson_add(calibration, lesson, json_string_value(json_array_get(names, index)),
                    log(processor / expected), cost_runs);
-    if (run->busy >= 0.0 && processor >= wall_least)
+    if (run->busy >= 0.0)
         lesson_add(calibration, lesson, json_string_value(json_object_get(learn, "wall_name")),
                    wall_logarithm(learn, metrics, processor, run), wall_runs);
 }

@@ -53,11 +53,22 @@ static const struct json_field series_members[] = {
 const struct json_field schema_series = {
     .kind = FIELD_OBJECT, .schema = "Series", .fields = series_members};
 
+static const struct json_field quality_members[] = {
+    MEMBER(INTEGER, "judged", "jobs that succeeded at once, as they were forecast"),
+    MEMBER(INTEGER, "inside", "of these, whose wall time was in its interval"),
+    MEMBER_SOMETIMES(NUMBER, "inside_ratio", "share of the last hundred or so"),
+    MEMBER(INTEGER, "learned", "methods and classes with statistics of their own"),
+    MEMBER_END,
+};
 static const struct json_field version_members[] = {
     MEMBER(TEXT, "name", "talus"),
     MEMBER(TEXT, "version", NULL),
     MEMBER(TEXT, "build", "version, commit and compiler"),
     MEMBER(TEXT, "api", "v1"),
+    {.key = "forecasts",
+     .kind = FIELD_OBJECT,
+     .fields = quality_members,
+     .meaning = "how good they were, and what they go by"},
     MEMBER_END,
 };
 const struct json_field schema_version = {

@@ -2,6 +2,7 @@
 /* Version, liveness, readiness, and the JSON Schema of scenes. */
 #include "access.h"
 #include "audit.h"
+#include "calibration.h"
 #include "conditional.h"
 #include "helper.h"
 #include "openapi.h"
@@ -23,9 +24,14 @@ const struct operation operation_version = {
 
 enum handled handle_version(struct request *request)
 {
+    struct calibration_summary quality;
+    calibration_summarise(request->service->calibration, &quality);
+    json_t *recent = quality.judged > 0 ? json_real(quality.recent) : NULL;
     reply_json(&request->reply, MHD_HTTP_OK,
-               json_pack("{s:s, s:s, s:s, s:s}", "name", "talus", "version", TALUS_VERSION, "build",
-                         talus_build(), "api", "v1"));
+               json_pack("{s:s, s:s, s:s, s:s, s:{s:I, s:I, s:o*, s:I}}", "name", "talus",
+                         "version", TALUS_VERSION, "build", talus_build(), "api", "v1", "forecasts",
+                         "judged", (json_int_t)quality.judged, "inside", (json_int_t)quality.inside,
+                         "inside_ratio", recent, "learned", (json_int_t)quality.names));
     return HANDLED;
 }
 

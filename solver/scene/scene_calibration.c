@@ -3,15 +3,18 @@
 
 #include <math.h>
 
-const char scene_calibration_wall[] = "wall";
-
 /* Standard deviations of logarithms: of the table of rates on a machine never seen, ... */
 static const double machine_spread = 0.6;
 /* ... of a class within a machine, of a method within its class, of a run within its method: what
  * the rates do not know of scenes (how a flow fills its blocks, how many walls it touches). */
 static const double class_spread = 0.25, method_spread = 0.2, run_spread = 0.15;
-/* Of waiting: how far a machine is from idle, and how that changes from run to run. */
-static const double wait_level_spread = 0.2, wait_run_spread = 0.15;
+/* Of waiting: how far a machine is from idle, and how that changes from run to run. A short run
+ * does little but write files, each of which waits for a disk that others use. */
+static const struct wait {
+    const char *name;
+    double least; /* [s] that a run is predicted to take */
+    double level_spread, run_spread;
+} waits[] = {{"wall", 0.3, 0.2, 0.15}, {"wall/short", 0.0, 0.6, 0.4}};
 /* Runs that the spreads above are worth, against what has been seen. */
 static const double prior_freedom = 4.0;
 /* More runs than that do not make the mean of a level more certain: machines change. */
@@ -78,15 +81,27 @@ struct calibration_belief scene_calibration_cost(const json_t *calibration,
     return belief;
 }
 
-struct calibration_belief scene_calibration_wait(const json_t *calibration, double threads)
+static const struct wait *wait_of(double predicted)
 {
+    return predicted >= waits[0].least ? &waits[0] : &waits[1];
+}
+
+const char *scene_calibration_wait_name(double predicted)
+{
+    return wait_of(predicted)->name;
+}
+
+struct calibration_belief scene_calibration_wait(const json_t *calibration, double predicted,
+                                                 double threads)
+{
+    const struct wait *wait = wait_of(predicted);
     const json_t *load = json_object_get(calibration, "load");
     double cores = json_number_value(json_object_get(load, "cores"));
     double busy = fmax(json_number_value(json_object_get(load, "busy")), 0.0);
-    struct level level = level_read(calibration, scene_calibration_wall);
-    struct calibration_belief belief = {.variance = wait_level_spread * wait_level_spread};
-    belief = update(belief, level, wait_run_spread);
-    belief.variance += run_variance(level, wait_run_spread);
+    struct level level = level_read(calibration, wait->name);
+    struct calibration_belief belief = {.variance = wait->level_spread * wait->level_spread};
+    belief = update(belief, level, wait->run_spread);
+    belief.variance += run_variance(level, wait->run_spread);
     if (cores >= 1.0 && busy > 0.0) {
         /* More threads than cores take turns, as long as the others last. */
         double crowded = log(fmax(1.0, (busy + threads) / cores));

@@ -101,8 +101,9 @@ static struct score play(struct machine machine, size_t from)
         size_t method = (size_t)(uniform(&machine.random) * METHOD_COUNT);
         const struct scene_cost_keys keys = keys_of(method);
         struct calibration_interval interval = scene_calibration_interval(
-            predicted, scene_calibration_join(scene_calibration_cost(calibration, &keys),
-                                              scene_calibration_wait(calibration, 1.0), 0.0));
+            predicted,
+            scene_calibration_join(scene_calibration_cost(calibration, &keys),
+                                   scene_calibration_wait(calibration, predicted, 1.0), 0.0));
         double cost = machine.offset + machine.class_offset[method % CLASS_COUNT] +
                       machine.method_offset[method] + machine.run_spread * normal(&machine.random);
         double wait = fmax(0.0, machine.wait_mean + machine.wait_spread * normal(&machine.random));
@@ -115,7 +116,7 @@ static struct score play(struct machine machine, size_t from)
         }
         for (size_t level = 0; level < COST_LEVEL_COUNT; level++)
             learn(all, ratios, keys.level[level], cost, 20.0);
-        learn(all, ratios, scene_calibration_wall, wait, 10.0);
+        learn(all, ratios, scene_calibration_wait_name(predicted), wait, 10.0);
     }
     json_decref(calibration);
     json_decref(ratios);
