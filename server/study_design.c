@@ -78,8 +78,8 @@ void study_plan_release(struct study_plan *plan)
 
 size_t study_plan_count(const struct study_plan *plan)
 {
-    return plan->kind == STUDY_BISECT ? study_bisect_runs_max(&plan->bisect)
-                                      : json_array_size(plan->rows);
+    size_t each = plan->kind == STUDY_BISECT ? study_bisect_runs_max(&plan->bisect) : 1;
+    return each * json_array_size(plan->rows);
 }
 
 json_t *study_scene(const json_t *scene, const json_t *set)
@@ -97,9 +97,13 @@ json_t *study_scene(const json_t *scene, const json_t *set)
     return result;
 }
 
-json_t *study_bisect_row(const struct study_bisect *bisect, double value)
+json_t *study_bisect_row(const struct study_plan *plan, const json_t *repeated, double value)
 {
+    const char *parameter = plan->bisect.parameter;
     json_t *number = json_real(value);
-    return json_pack("{s:{s:O}, s:{s:o}}", "parameters", bisect->parameter, number, "set",
-                     bisect->parameter, number);
+    json_t *parameters = json_copy(json_object_get(repeated, "parameters"));
+    json_t *set = json_copy(json_object_get(repeated, "set"));
+    (void)json_object_set(parameters, parameter, number);
+    (void)json_object_set_new(set, parameter, number);
+    return json_pack("{s:o, s:o}", "parameters", parameters, "set", set);
 }

@@ -17,8 +17,9 @@ enum study_kind { STUDY_GRID, STUDY_LIST, STUDY_SAMPLE, STUDY_WORK_PRECISION, ST
 struct study_plan {
     enum study_kind kind;
     json_t *names; /* array of strings: what `parameters` of each row holds, in this order */
-    json_t *rows;  /* array of { "parameters": {NAME: value or label}, "set": {POINTER: value} };
-                    * empty for a bisection, whose rows follow from answers (study_bisect_row) */
+    json_t *rows;  /* array of { "parameters": {NAME: value or label}, "set": {POINTER: value} }.
+                    * The rows of a bisection follow from answers (study_bisect_row): these are what
+                    * it is repeated for, at least one, and that sets nothing without "for_each" */
     const char *error_metric, *cost_metric; /* work_precision; NULL otherwise */
     struct study_bisect bisect;             /* bisect */
     json_t *design;                         /* what was read */
@@ -40,7 +41,7 @@ size_t study_plan_count(const struct study_plan *plan);
  * cannot be after study_plan_read took the design for the same scene. */
 json_t *study_scene(const json_t *scene, const json_t *set);
 
-/* The row of a bisection that tries a value: a new reference of the form that `rows` hold. */
-json_t *study_bisect_row(const struct study_bisect *bisect, double value);
+/* The row of a bisection that tries a value, in one of plan->rows: a new reference of their form. */
+json_t *study_bisect_row(const struct study_plan *plan, const json_t *repeated, double value);
 
 #endif

@@ -147,10 +147,30 @@ static const struct json_field forecast_members[] = {
 const struct json_field schema_study_forecast = {
     .kind = FIELD_OBJECT, .schema = "StudyForecast", .fields = forecast_members};
 
-static const struct json_field result_members[] = {
-    MEMBER(NUMBER, "value", "the end of the bracket that meets the condition"),
+static const struct json_field search_members[] = {
+    MEMBER_OR_NULL(NUMBER, "value", "the end of the bracket that meets the condition; null: none"),
     MEMBER(NUMBER, "low", NULL),
     MEMBER(NUMBER, "high", NULL),
+    MEMBER_SOMETIMES(TEXT, "detail", "why there is no value"),
+    {.key = "parameters",
+     .kind = FIELD_MAP,
+     .optional = true,
+     .item = &anything,
+     .meaning = "of for_each"},
+    MEMBER_END,
+};
+static const struct json_field search_item = {
+    .kind = FIELD_OBJECT, .schema = "StudySearch", .fields = search_members};
+
+static const struct json_field result_members[] = {
+    MEMBER_SOMETIMES(NUMBER, "value", "the end of the bracket that meets the condition"),
+    MEMBER_SOMETIMES(NUMBER, "low", NULL),
+    MEMBER_SOMETIMES(NUMBER, "high", NULL),
+    {.key = "for_each",
+     .kind = FIELD_LIST,
+     .optional = true,
+     .item = &search_item,
+     .meaning = "one for each repetition, instead of the others"},
     MEMBER_END,
 };
 

@@ -12,7 +12,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { BATCH_FIRST = 16, BATCH_MAX = 1024, MISTAKEN_ROWS_MAX = 10, BISECT_ENDS = 2 };
+enum { BATCH_FIRST = 16, BATCH_MAX = 1024, MISTAKEN_ROWS_MAX = 10 };
 
 /* A batch grows while an answer takes less than this share of the time it may take, and shrinks
  * when it takes more than the other. */
@@ -235,15 +235,17 @@ static enum talus_status forecast_write(struct study_draft *draft, double worker
     struct study_totals *totals = &draft->totals;
     double threads = draft->threads < 1 ? 1 : (double)draft->threads, elapsed[3];
     if (draft->plan.kind == STUDY_BISECT) {
-        double scale = (double)draft->study.rows_expected / BISECT_ENDS;
+        double scale = (double)draft->study.rows_expected / (double)json_array_size(draft->rows);
         totals->rows *= scale;
         totals->steps *= scale;
         totals->disk *= scale;
         for (size_t index = 0; index < 3; index++)
             totals->wall[index] *= scale;
     }
-    /* A bisection runs one after another, but for the two ends. */
-    double at_once = draft->plan.kind == STUDY_BISECT ? 1 : fmax(1, floor(workers / threads));
+    /* A search runs its rows one after another, but for the two ends. */
+    double at_once = fmax(1, floor(workers / threads));
+    if (draft->plan.kind == STUDY_BISECT)
+        at_once = fmin(at_once, (double)json_array_size(draft->plan.rows));
     for (size_t index = 0; index < 3; index++)
         elapsed[index] = fmax(totals->longest[index], totals->wall[index] / at_once);
     json_t *forecast =

@@ -9,8 +9,6 @@
 #include <stdio.h>
 #include <string.h>
 
-enum { BISECT_ENDS = 2 };
-
 bool study_draft_is(const json_t *body)
 {
     return json_object_get(body, "design") != NULL;
@@ -150,6 +148,20 @@ static void design_wants(struct study_draft *draft)
         wanted_add(draft, condition->terms[index].metric);
 }
 
+/* What a bisection runs first: the ends of every search. */
+static json_t *bisection_ends(const struct study_plan *plan)
+{
+    json_t *rows = json_array();
+    size_t index;
+    const json_t *repeated;
+    json_array_foreach(plan->rows, index, repeated)
+    {
+        (void)json_array_append_new(rows, study_bisect_row(plan, repeated, plan->bisect.low));
+        (void)json_array_append_new(rows, study_bisect_row(plan, repeated, plan->bisect.high));
+    }
+    return rows;
+}
+
 static void design_read(const json_t *body, const struct config *config, struct study_draft *draft,
                         json_t *errors)
 {
@@ -162,15 +174,8 @@ static void design_read(const json_t *body, const struct config *config, struct 
         return;
     study->kind = draft->plan.kind;
     study->rows_expected = (int64_t)study_plan_count(&draft->plan);
-    draft->rows = json_incref(draft->plan.rows);
-    if (draft->plan.kind == STUDY_BISECT) {
-        const double ends[BISECT_ENDS] = {draft->plan.bisect.low, draft->plan.bisect.high};
-        json_decref(draft->rows);
-        draft->rows = json_array();
-        for (size_t index = 0; index < BISECT_ENDS; index++)
-            (void)json_array_append_new(draft->rows,
-                                        study_bisect_row(&draft->plan.bisect, ends[index]));
-    }
+    draft->rows = draft->plan.kind == STUDY_BISECT ? bisection_ends(&draft->plan)
+                                                   : json_incref(draft->plan.rows);
     if (job_json_set(&study->scene, draft->scene, &error) != TALUS_OK ||
         job_json_set(&study->design, design, &error) != TALUS_OK ||
         job_json_set(&study->names, draft->plan.names, &error) != TALUS_OK)

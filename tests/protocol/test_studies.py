@@ -131,6 +131,23 @@ class Designs(StudyTest):
         self.assertIsNone(study["result"])
         self.assertEqual(len(rows), 2)
 
+    def test_bisections_for_each_row_of_a_grid(self):
+        """The fake worker's run-out follows the duration; a label moves its edge out of reach."""
+        each = {"parameters": {"limit": [{"label": "in reach", "value": 1},
+                                         {"label": "beyond", "value": 100}]},
+                "set": {"/bodies/0/box/max/0": "limit"}}
+        study, rows = self.run_study(study_body(self.bisection(for_each=each)))
+        found = study["result"]["for_each"]
+        self.assertEqual([one["parameters"]["limit"] for one in found], ["in reach", "beyond"])
+        for one in found:
+            self.assertLessEqual(one["low"], 4.3)
+            self.assertGreaterEqual(one["high"], 4.3)
+            self.assertEqual(one["value"], one["low"])
+            tried = [row["parameters"]["/duration"] for row in rows
+                     if row["parameters"]["limit"] == one["parameters"]["limit"]]
+            self.assertEqual(len(set(tried)), len(tried), tried)
+        self.assertEqual(len(rows), study["progress"]["rows_expected"])
+
     def test_a_failed_job_does_not_meet_a_condition(self):
         scene = study_scene({"fail": {"reason": "unstable", "exit": 11, "row": 1, "above": 6}})
         study, rows = self.run_study(study_body(

@@ -201,9 +201,9 @@ static void test_bisect(void **state)
     assert_int_equal(plan.kind, STUDY_BISECT);
     assert_string_equal(plan.bisect.parameter, "/solver/courant");
     assert_int_equal(plan.bisect.condition.term_count, 2);
-    assert_int_equal(json_array_size(plan.rows), 0);
+    assert_int_equal(json_array_size(plan.rows), 1);
     assert_int_equal(study_plan_count(&plan), 10); /* 1.9 / 2^8 is below 0.01 */
-    json_t *row = study_bisect_row(&plan.bisect, 0.5);
+    json_t *row = study_bisect_row(&plan, json_array_get(plan.rows, 0), 0.5);
     expect_json(row,
                 "{\"parameters\":{\"/solver/courant\":0.5},\"set\":{\"/solver/courant\":0.5}}");
     json_decref(row);
@@ -212,6 +212,32 @@ static void test_bisect(void **state)
                      "\"tolerance\":5,\"condition\":\"n>1\"}}");
     assert_int_equal(study_plan_count(&plan), 2);
     study_plan_release(&plan);
+}
+
+static void test_bisect_for_each(void **state)
+{
+    struct study_plan plan =
+        plan_good("{\"bisect\":{\"parameter\":\"/solver/courant\",\"low\":0.1,\"high\":2,"
+                  "\"tolerance\":0.01,\"condition\":\"n<1\",\"for_each\":{\"parameters\":{"
+                  "\"/duration\":[1,2,3]},\"set\":{}}}}");
+    (void)state;
+    assert_int_equal(json_array_size(plan.rows), 3);
+    assert_int_equal(study_plan_count(&plan), 30);
+    json_t *row = study_bisect_row(&plan, json_array_get(plan.rows, 1), 0.5);
+    expect_json(row, "{\"parameters\":{\"/duration\":2,\"/solver/courant\":0.5},"
+                     "\"set\":{\"/duration\":2,\"/solver/courant\":0.5}}");
+    /* The rows of the plan are as they were. */
+    assert_int_equal(json_object_size(json_object_get(json_array_get(plan.rows, 1), "parameters")),
+                     1);
+    json_decref(row);
+    study_plan_release(&plan);
+    expect("{\"bisect\":{\"parameter\":\"/duration\",\"low\":0.1,\"high\":2,"
+           "\"tolerance\":0.01,\"condition\":\"n<1\",\"for_each\":{\"parameters\":{"
+           "\"/duration\":[1,2,3]}}}}",
+           "/design/bisect/parameter", "contradiction", "for_each");
+    expect("{\"bisect\":{\"parameter\":\"/duration\",\"low\":0.1,\"high\":2,"
+           "\"tolerance\":0.01,\"condition\":\"n<1\",\"for_each\":[]}}",
+           "/design/bisect/for_each", "type", "object");
 }
 
 static void test_design_mistakes(void **state)
@@ -611,6 +637,7 @@ int main(void)
         cmocka_unit_test(test_sample),
         cmocka_unit_test(test_work_precision),
         cmocka_unit_test(test_bisect),
+        cmocka_unit_test(test_bisect_for_each),
         cmocka_unit_test(test_design_mistakes),
         cmocka_unit_test(test_grid_mistakes),
         cmocka_unit_test(test_set_mistakes),
