@@ -41,7 +41,8 @@ size_t study_plan_count(const struct study_plan *plan);
  * cannot be after study_plan_read took the design for the same scene. */
 json_t *study_scene(const json_t *scene, const json_t *set);
 
-/* The row of a bisection that tries a value, in one of plan->rows: a new reference of their form. */
+/* The row of a bisection that tries a value, in one of plan->rows: a new reference of their form.
+ */
 json_t *study_bisect_row(const struct study_plan *plan, const json_t *repeated, double value);
 
 #endif
