@@ -20,19 +20,23 @@ static const char answer_fields[] = "Content-Disposition, Content-Range, ETag, "
                                     "Idempotent-Replayed, Location, Retry-After, WWW-Authenticate";
 static const char preflight_seconds[] = "600";
 
+/* An IPv6 address in brackets. */
+static bool six_parse(const char *text, struct in6_addr *six)
+{
+    char inner[INET6_ADDRSTRLEN];
+    size_t length = strlen(text);
+    if (length < 2 || length - 2 >= sizeof inner || text[0] != '[' || text[length - 1] != ']')
+        return false;
+    (void)snprintf(inner, sizeof inner, "%.*s", (int)length - 2, text + 1);
+    return inet_pton(AF_INET6, inner, six) == 1;
+}
+
 /* A name or an address, IPv6 in brackets, without a port. */
 static bool is_host(const char *text)
 {
-    char inner[HOST_BYTES_MAX];
     struct in6_addr six;
     size_t length = strlen(text);
-    if (length == 0 || length >= sizeof inner)
-        return false;
-    if (text[0] != '[')
-        return strspn(text, lower_host_characters) == length;
-    (void)snprintf(inner, sizeof inner, "%s", text + 1);
-    inner[length - 2] = '\0';
-    return text[length - 1] == ']' && inet_pton(AF_INET6, inner, &six) == 1;
+    return six_parse(text, &six) || (length > 0 && strspn(text, lower_host_characters) == length);
 }
 
 /* A copy in small letters; false if it is too long. */
@@ -93,18 +97,11 @@ enum talus_status origin_config_check(const struct config *config, struct talus_
 
 static bool is_loopback(const char *name)
 {
-    char inner[INET6_ADDRSTRLEN];
     struct in_addr four;
     struct in6_addr six;
-    size_t length = strlen(name);
-    if (strcmp(name, "localhost") == 0)
-        return true;
-    if (name[0] == '[' && length - 2 < sizeof inner) {
-        (void)snprintf(inner, sizeof inner, "%.*s", (int)length - 2, name + 1);
-        return name[length - 1] == ']' && inet_pton(AF_INET6, inner, &six) == 1 &&
-               IN6_IS_ADDR_LOOPBACK(&six);
-    }
-    return inet_pton(AF_INET, name, &four) == 1 && (ntohl(four.s_addr) >> 24) == 127;
+    return strcmp(name, "localhost") == 0 ||
+           (six_parse(name, &six) && IN6_IS_ADDR_LOOPBACK(&six)) ||
+           (inet_pton(AF_INET, name, &four) == 1 && (ntohl(four.s_addr) >> 24) == 127);
 }
 
 static bool is_listed(const char *name, char *const *list)

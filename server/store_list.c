@@ -52,7 +52,7 @@ static void filter_bind_text(sqlite3_stmt *statement, const char *name, const ch
 
 static void filter_bind_labels(sqlite3_stmt *statement, const struct store_filter *filter)
 {
-    char key[24], value[24];
+    char key[32], value[32];
     for (size_t index = 0; index < filter->label_count; index++) {
         (void)snprintf(key, sizeof key, ":key%zu", index);
         (void)snprintf(value, sizeof value, ":value%zu", index);

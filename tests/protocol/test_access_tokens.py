@@ -139,6 +139,29 @@ class Required(TokenTest):
         self.assertEqual(bob.delete(path).status, 204)
         self.assert_problem(carol.post("/v1/jobs/no-such-job/cancel"), 404)
 
+    def test_studies_belong_to_a_token(self):
+        bob, carol, alice = (self.as_(name) for name in ("bob", "carol", "alice"))
+        design = {"list": {"rows": [{"/duration": 1}, {"/duration": 2}]}}
+        body = {"name": "x", "scene": fake_scene({"seconds": 600}), "design": design,
+                "metrics": ["wall_seconds"], "reuse": False}
+        self.assert_problem(self.as_("dave").post("/v1/studies", body), 403)
+        reply = bob.post("/v1/studies", body)
+        self.assertEqual(reply.status, 201, reply)
+        path = f"/v1/studies/{reply.json()['id']}"
+        for method, target in (("POST", path + "/cancel"), ("DELETE", path)):
+            problem = self.assert_problem(carol.request(method, target), 403)
+            self.assertEqual(problem["type"], "urn:talus:problem:owner")
+        self.assertEqual(self.as_("dave").get(path + "/results").status, 200)
+        self.assert_problem(carol.post("/v1/studies/no-such-study/cancel"), 404)
+        self.assertEqual(bob.post(path + "/cancel").status, 200)
+        wait_for(lambda: alice.get(path).json()["state"] == "cancelled", 60, "the study's end")
+        self.assertEqual(alice.delete(path).status, 204)
+        told = [(line["who"], line["method"], line["status"]) for line in audit_lines(self.daemon)
+                if line.get("study") == reply.json()["id"]]
+        self.assertEqual(told, [("bob", "POST", 201), ("carol", "POST", 403),
+                                ("carol", "DELETE", 403), ("bob", "POST", 200),
+                                ("alice", "DELETE", 204)])
+
     def test_idempotency_keys_belong_to_a_token(self):
         body = {"scene": fake_scene({"steps": 3})}
         replies = [self.as_(name).post("/v1/jobs", body, idempotency_key="same")
@@ -296,7 +319,8 @@ class Starting(unittest.TestCase):
         alice = self.daemon.client(token=token_of("alice"))
         for host in ("talus.example", f"10.0.0.7:{port}"):
             self.assertEqual(alice.get("/v1/version", host=host).status, 200)
-        self.assertEqual(alice.get("/v1/version", host="a b").status, 403)
+        for host in ("a b", "[", "]", "[]", "[x]", ":", "a:b", "x" * 300):
+            self.assertEqual(alice.get("/v1/version", host=host).status, 403, host)
         log = self.daemon.tail()
         self.assertIn("everyone can read the token file", log)
         self.assertIn("plain HTTP beyond this machine", log)
