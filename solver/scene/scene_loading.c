@@ -241,8 +241,10 @@ static void set_speeds(struct scene_loading *loading, const struct talus_scene *
 
 void scene_loading_init(struct scene_loading *loading, const struct talus_scene *scene)
 {
+    enum { ENTRY_MAX = 64 }; /* bodies and boundaries are paired: larger scenes are left alone */
     *loading = (struct scene_loading){.kind = SCENE_LOADING_OTHER};
-    if (has_own_rate(scene) || scene->body_count == 0 || !is_held(scene))
+    if (scene->body_count > ENTRY_MAX || scene->boundary_count > ENTRY_MAX ||
+        scene->body_count == 0 || has_own_rate(scene) || !is_held(scene))
         return;
     set_speeds(loading, scene);
     const bool sudden = has_sudden_load(scene);
