@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 #include "text.h"
 
+#include "number_text.h"
+
 #include <math.h>
 #include <stdarg.h>
 #include <stdio.h>
@@ -61,21 +63,11 @@ void text_print(struct text *text, const char *format, ...)
 
 void text_add_number(struct text *text, double value)
 {
-    char number[32];
-    if (!isfinite(value)) {
+    char number[NUMBER_TEXT_SIZE];
+    if (isfinite(value))
+        text_add(text, number, number_text(value, number));
+    else
         text_add_string(text, "null");
-        return;
-    }
-    if (value == 0 && !signbit(value)) {
-        text_add(text, "0", 1);
-        return;
-    }
-    for (int digits = 15; digits <= 17; digits++) {
-        (void)snprintf(number, sizeof number, "%.*g", digits, value);
-        if (strtod(number, NULL) == value)
-            break;
-    }
-    text_add_string(text, number);
 }
 
 void text_cut(struct text *text, size_t length)
