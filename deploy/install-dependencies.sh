@@ -3,8 +3,9 @@
 # Installs the Debian 12 packages that Talus is built from: as root directly, otherwise with sudo.
 # Does nothing, and needs no network, when they are all there.
 #   deploy/install-dependencies.sh [OPTION...]   what building, running and testing need, and
-#       --checks     clang, clang-format, clang-tidy, valgrind, qemu-user, nginx, caddy: what .ci/run
-#                    uses (Debian starts the two servers: `systemctl disable --now nginx caddy`)
+#       --checks     clang, clang-format, clang-tidy, valgrind, qemu-user, nginx, caddy,
+#                    promtool: what .ci/run uses (Debian starts three of them: `systemctl
+#                    disable --now nginx caddy prometheus`)
 #       --aarch64    the cross compiler and libraries of the preset aarch64 (adds the architecture
 #                    arm64 to dpkg)
 #       --coverage   gcovr
@@ -21,7 +22,7 @@ for option in "$@"; do
     case "$option" in
     --checks)
         packages+=(clang libomp-dev clang-format clang-tidy valgrind qemu-user
-            nginx-light caddy openssl)
+            nginx-light caddy openssl prometheus)
         ;;
     --aarch64)
         add_architecture=arm64

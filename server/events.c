@@ -256,6 +256,16 @@ void events_subscribe(struct events *events, struct request *request,
     (void)pthread_mutex_unlock(&events->mutex);
 }
 
+size_t events_reader_count(struct events *events)
+{
+    size_t count = 0;
+    (void)pthread_mutex_lock(&events->mutex);
+    for (const struct subscription *own = events->first; own != NULL; own = own->next)
+        count += !own->closed;
+    (void)pthread_mutex_unlock(&events->mutex);
+    return count;
+}
+
 void events_wake(struct events *events)
 {
     (void)pthread_mutex_lock(&events->mutex);

@@ -20,6 +20,8 @@ void events_subscribe(struct events *events, struct request *request,
                       const struct event_source *source);
 /* The feed of all jobs. */
 struct feed *events_feed(struct events *events);
+/* Open streams. */
+size_t events_reader_count(struct events *events);
 /* Looks at the files now. */
 void events_wake(struct events *events);
 /* Ends the streams whose token is not in force any more. */

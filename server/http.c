@@ -6,7 +6,10 @@
 #include "http_origin.h"
 #include "http_watch.h"
 #include "job_cache.h"
+#include "moment.h"
 #include "request.h"
+#include "service.h"
+#include "service_metrics.h"
 #include "work_lanes.h"
 
 #include <stdio.h>
@@ -87,6 +90,7 @@ static enum MHD_Result reply_queue(struct request *request)
         reply_header(reply, MHD_HTTP_HEADER_CONNECTION, "close");
     if (reply->response == NULL)
         return MHD_NO;
+    metrics_request(request->service->metrics, request);
     return MHD_queue_response(request->connection, reply->status, reply->response);
 }
 
@@ -95,6 +99,7 @@ static enum MHD_Result request_begin(struct request *request, const char *method
     const union MHD_ConnectionInfo *information =
         MHD_get_connection_info(request->connection, MHD_CONNECTION_INFO_SOCKET_CONTEXT);
     request->begun = true;
+    request->began = moment_monotonic();
     request->watch = information == NULL ? NULL : information->socket_context;
     request->method = strdup(method);
     if (request->method == NULL)

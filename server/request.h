@@ -56,6 +56,7 @@ struct request {
     uint64_t body_length; /* received, kept or not */
     struct reply reply;
     struct helper *helper; /* HELPER lane: the process to ask */
+    double began;          /* its header fields were there (monotonic [s]) */
     bool begun;            /* headers are checked */
     bool refused;          /* because of who asks */
     bool handed_in;        /* was given to a lane */

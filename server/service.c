@@ -13,6 +13,7 @@
 #include "jobs.h"
 #include "moment.h"
 #include "recovery.h"
+#include "service_metrics.h"
 #include "studies/study_driver.h"
 #include "supervisor.h"
 #include "waits.h"
@@ -75,8 +76,9 @@ static enum talus_status parts_create(struct service *service, struct talus_erro
 {
     char path[4200];
     (void)snprintf(path, sizeof path, "%s/talus.sqlite", service->state);
-    enum talus_status status =
-        audit_create(&service->audit, service->state, service->config, error);
+    enum talus_status status = metrics_create(&service->metrics, error);
+    if (status == TALUS_OK)
+        status = audit_create(&service->audit, service->state, service->config, error);
     if (status == TALUS_OK)
         status = identifier_source_init(&service->identifiers, error);
     if (status == TALUS_OK)
@@ -113,6 +115,7 @@ static void parts_destroy(struct service *service)
     calibration_destroy(service->calibration);
     store_close(service->store);
     file_checksums_destroy(service->checksums);
+    metrics_destroy(service->metrics);
     json_decref(service->schema);
     identifier_source_release(&service->identifiers);
     (void)pthread_mutex_destroy(&service->schema_mutex);
@@ -129,6 +132,7 @@ enum talus_status service_start(struct service *service, const struct config *co
 {
     memset(service, 0, sizeof *service);
     service->config = config;
+    service->began = moment_monotonic();
     service->lock = -1;
     (void)pthread_mutex_init(&service->journal, NULL);
     (void)pthread_mutex_init(&service->schema_mutex, NULL);

@@ -15,6 +15,7 @@
 #include <sys/types.h>
 
 struct access;
+struct metrics;
 struct audit;
 struct lanes;
 struct waits;
@@ -32,6 +33,8 @@ struct service {
     char boot[64];        /* identifies the boot of the machine */
     int lock;             /* descriptor that holds the state folder's lock */
     atomic_bool draining; /* stops taking work */
+    struct metrics *metrics;
+    double began; /* monotonic [s] */
     struct access *access;
     struct audit *audit;
     struct identifier_source identifiers;

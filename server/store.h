@@ -100,6 +100,9 @@ TALUS_MUST_CHECK enum talus_status
 store_job_list(struct store *store, const struct store_filter *filter,
                bool (*visit)(const struct job *job, void *context), void *context,
                struct talus_error *error);
+/* How many jobs there are in each state. */
+TALUS_MUST_CHECK enum talus_status
+store_job_counts(struct store *store, int64_t counts[JOB_STATE_COUNT], struct talus_error *error);
 /* Finds the oldest job that has succeeded with a scene (by its hash) under a build of the solver,
  * and was not steered; `found` stays empty if there is none. */
 TALUS_MUST_CHECK enum talus_status store_job_find_finished(struct store *store,

@@ -109,6 +109,28 @@ enum talus_status store_job_list(struct store *store, const struct store_filter 
     return status;
 }
 
+enum talus_status store_job_counts(struct store *store, int64_t counts[JOB_STATE_COUNT],
+                                   struct talus_error *error)
+{
+    enum talus_status status = TALUS_IO;
+    memset(counts, 0, JOB_STATE_COUNT * sizeof *counts);
+    (void)pthread_mutex_lock(&store->reader_mutex);
+    sqlite3_stmt *statement =
+        store_prepare(store->reader, "SELECT state, count(*) FROM jobs GROUP BY state", error);
+    if (statement != NULL) {
+        int step;
+        while ((step = sqlite3_step(statement)) == SQLITE_ROW) {
+            int64_t state = sqlite3_column_int64(statement, 0);
+            if (state >= 0 && state < JOB_STATE_COUNT)
+                counts[state] = sqlite3_column_int64(statement, 1);
+        }
+        status = step == SQLITE_DONE ? TALUS_OK : store_failure(store->reader, error);
+        store_release(statement);
+    }
+    (void)pthread_mutex_unlock(&store->reader_mutex);
+    return status;
+}
+
 enum talus_status store_job_find_finished(struct store *store, const char *scene_hash,
                                           const char *build, char found[64],
                                           struct talus_error *error)

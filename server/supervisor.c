@@ -10,6 +10,7 @@
 #include "jobs.h"
 #include "moment.h"
 #include "scheduler.h"
+#include "service_metrics.h"
 
 #include <errno.h>
 #include <poll.h>
@@ -250,6 +251,8 @@ static bool attempt_record(struct supervisor *supervisor, struct attempt *attemp
     if (!gone)
         attempt_outcome(attempt, &outcome, &receipt, detail);
     enum talus_status status = jobs_finish(supervisor->service, attempt->id, &outcome, &error);
+    if (status == TALUS_OK)
+        metrics_attempt_end(supervisor->service->metrics, outcome.end);
     if (status == TALUS_OK && outcome.end == JOB_END_SUCCEEDED)
         attempt_learn(supervisor, attempt, outcome.metrics);
     json_decref(receipt);
@@ -320,6 +323,7 @@ static enum talus_status attempt_begin(struct supervisor *supervisor, const char
         return status;
     if (job.threads > (int64_t)service->config->workers)
         job.threads = (int64_t)service->config->workers;
+    metrics_attempt_begin(service->metrics, job.attempt > 1);
     const struct executor_task task = {
         .program = service->config->worker_program,
         .folder = folder,
