@@ -163,17 +163,15 @@ static enum talus_status content_read(int descriptor, char *content, const char 
     return strlen(content) == length ? TALUS_OK : file_error(path, "it is not a text", error);
 }
 
-enum talus_status token_set_read(struct token_set *set, const char *path, bool *exposed,
-                                 struct text *mistakes, struct talus_error *error)
+/* Opens the file, judges it and reads it. */
+static enum talus_status file_read(const char *path, char *content, bool *exposed,
+                                   struct talus_error *error)
 {
-    struct stat information;
-    enum talus_status status = TALUS_OK;
-    char *content = malloc(FILE_BYTES_MAX + 2);
+    struct stat information = {0};
+    enum talus_status status;
     /* Not to hang on a pipe. */
     int descriptor = open(path, O_RDONLY | O_CLOEXEC | O_NONBLOCK);
-    if (content == NULL)
-        status = talus_error_set(error, TALUS_MEMORY, "memory", "", "out of memory");
-    else if (descriptor < 0 || fstat(descriptor, &information) != 0)
+    if (descriptor < 0 || fstat(descriptor, &information) != 0)
         status = file_error(path, strerror(errno), error);
     else if (!S_ISREG(information.st_mode))
         status = file_error(path, "it is not a regular file", error);
@@ -181,12 +179,21 @@ enum talus_status token_set_read(struct token_set *set, const char *path, bool *
         status = file_error(path, "everyone can write it (chmod o-w)", error);
     else
         status = content_read(descriptor, content, path, error);
-    if (status == TALUS_OK) {
-        *exposed = (information.st_mode & S_IROTH) != 0;
-        status = token_set_parse(set, content, mistakes, error);
-    }
+    *exposed = (information.st_mode & S_IROTH) != 0;
     if (descriptor >= 0)
         (void)close(descriptor);
+    return status;
+}
+
+enum talus_status token_set_read(struct token_set *set, const char *path, bool *exposed,
+                                 struct text *mistakes, struct talus_error *error)
+{
+    char *content = malloc(FILE_BYTES_MAX + 2);
+    if (content == NULL)
+        return talus_error_set(error, TALUS_MEMORY, "memory", "", "out of memory");
+    enum talus_status status = file_read(path, content, exposed, error);
+    if (status == TALUS_OK)
+        status = token_set_parse(set, content, mistakes, error);
     free(content);
     return status;
 }
