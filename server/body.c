@@ -55,7 +55,11 @@ json_t *body_json(struct request *request)
         not_json(request, line, column, "brackets nest too deep");
         return NULL;
     }
-    json_t *root = json_loadb(text, length, JSON_REJECT_DUPLICATES | JSON_DECODE_ANY, &problem);
+    const size_t flags = JSON_REJECT_DUPLICATES | JSON_DECODE_ANY;
+    json_t *root = json_loadb(text, length, flags, &problem);
+    /* 1e20 may be written with all its digits. */
+    if (root == NULL && json_error_code(&problem) == json_error_numeric_overflow)
+        root = json_loadb(text, length, flags | JSON_DECODE_INT_AS_REAL, &problem);
     if (root == NULL)
         not_json(request, problem.line, problem.column, problem.text);
     return root;

@@ -51,7 +51,7 @@ void cone_check(const double *values, struct material_issues *issues)
     struct elasticity elasticity = elasticity_read(values);
 
     if (slope >= cone_slope_limit(fit))
-        material_issue_add(issues, "cone_slope", "range",
+        material_issue_add(issues, "cone_slope", "limit",
                            "%s cones are less steep than %.4f (a friction angle of 90 degrees)",
                            cone_fit_names[(size_t)values[CONE_VALUE_CONE_FIT]],
                            cone_slope_limit(fit));
@@ -60,12 +60,12 @@ void cone_check(const double *values, struct material_issues *issues)
                            "the plane_strain fit is known for dilation_angle 0 and for a dilation "
                            "angle equal to the friction angle only");
     else if (flow_slope > slope * (1.0 + 1e-9))
-        material_issue_add(issues, cone_flow_key(values), "range",
+        material_issue_add(issues, cone_flow_key(values), "limit",
                            "dilation beyond the friction (rho_G %.4g > rho_F %.4g) would make "
                            "plastic flow a source of energy",
                            flow_slope, slope);
     if (2.0 * elasticity.shear + 9.0 * elasticity.bulk * slope * flow_slope <= 0.0)
-        material_issue_add(issues, cone_flow_key(values), "range",
+        material_issue_add(issues, cone_flow_key(values), "limit",
                            "contraction is so strong that flow meets no yield surface: "
                            "2 G + 9 K rho_F rho_G must be positive");
 }

@@ -17,7 +17,7 @@ static size_t check(const double *values, struct material_issue *items, size_t c
     cone_check(values, &issues);
     struct cone cone = cone_read(values);
     if (issues.count == 0 && cone.slope * cone.flow_slope <= -1.0)
-        material_issue_add(&issues, cone_flow_key(values), "range",
+        material_issue_add(&issues, cone_flow_key(values), "limit",
                            "contraction is so strong that flow at the tip of the cone would be a "
                            "source of energy: rho_F rho_G must be above -1");
     return issues.count;

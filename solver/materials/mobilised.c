@@ -45,7 +45,7 @@ size_t mobilised_check(const double *values, struct material_issue *items, size_
                            "friction.a5 sets the dilation from the critical-state angle; "
                            "dilation_angle sets a constant one");
     if (isnan(values[MOBILISED_A0]) && dilation > values[MOBILISED_FRICTION_ANGLE])
-        material_issue_add(&issues, "dilation_angle", "range",
+        material_issue_add(&issues, "dilation_angle", "limit",
                            "dilation beyond the friction angle (%g) would make plastic flow a "
                            "source of energy",
                            values[MOBILISED_FRICTION_ANGLE]);

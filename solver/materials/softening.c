@@ -28,7 +28,7 @@ void decay_check(const char *key, double peak, double residual, struct material_
 void softening_check(bool residual_given, double rate, struct material_issues *issues)
 {
     if (residual_given && isnan(rate))
-        material_issue_add(issues, "softening_rate", "required",
+        material_issue_add(issues, "softening_rate", "incomplete",
                            "'softening_rate' is required with a residual strength: how fast "
                            "plastic shear strain brings it about");
     if (!residual_given && !isnan(rate))

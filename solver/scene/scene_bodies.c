@@ -59,8 +59,8 @@ static const struct scene_field clip_fields[] = {
 #define LATTICE(NAME, UNIT, MINIMUM, ABOVE, WHOLE, MEANING)                                        \
     {                                                                                              \
         .key = NAME, .kind = SCENE_VECTOR, .unit = UNIT, .minimum = MINIMUM, .maximum = 1e9,       \
-        .above_minimum = ABOVE, .default_value = NAN, .alternative = "lattice", .whole = WHOLE,    \
-        .scalar = true, .offset = AT(lattice_value), .meaning = MEANING                            \
+        .above_minimum = ABOVE, .required = true, .default_value = NAN, .alternative = "lattice",  \
+        .whole = WHOLE, .scalar = true, .offset = AT(lattice_value), .meaning = MEANING            \
     }
 
 static void read_material(struct scene_reader *reader, const struct scene_path *path,
@@ -95,7 +95,14 @@ const struct scene_field scene_body_fields[] = {
     SHAPE("sphere", sphere_fields, "sphere; a disc in 2D"),
     SHAPE("cylinder", cylinder_fields, "cylinder in 3D"),
     SHAPE("polygon", scene_polygon_fields, "polygon in 2D, convex or not"),
-    SHAPE("points", scene_points_fields, "the particles themselves; they have no lattice"),
+    {.key = "points",
+     .kind = SCENE_OBJECT,
+     .unit = "1",
+     .required = true,
+     .alternative = "shape",
+     .also = "lattice",
+     .fields = scene_points_fields,
+     .meaning = "the particles themselves; they have no lattice"},
     {.key = "clip",
      .kind = SCENE_OBJECT,
      .unit = "1",
@@ -140,38 +147,21 @@ static void check_order(struct scene_reader *reader, const struct scene_path *pa
         struct scene_path corner = {.parent = &shape, .key = "max"};
         struct scene_path here = {.parent = &corner, .index = k};
         if (max[k] <= min[k]) /* false for what was not readable (NAN) */
-            scene_mistake(reader, &here, "range", NULL, NULL, "max %g must be above min %g", max[k],
+            scene_mistake(reader, &here, "order", NULL, NULL, "max %g must be above min %g", max[k],
                           min[k]);
     }
 }
 
-/* Points are their own lattice, everything else needs one. */
-static void check_lattice(struct scene_reader *reader, const struct scene_path *path,
-                          const json_t *given, const struct talus_body *body)
+static void check_clip(struct scene_reader *reader, const struct scene_path *path,
+                       const json_t *given, const struct talus_body *body)
 {
-    static const char *const keys[] = {"particles_per_cell", "spacing", "count", NULL};
-    const bool listed = json_object_get(given, "points") != NULL;
-    bool known = false;
-    for (const char *const *key = keys; *key != NULL; key++) {
-        struct scene_path here = {.parent = path, .key = *key};
-        if (json_object_get(given, *key) == NULL)
-            continue;
-        known = true;
-        if (listed)
-            scene_mistake(reader, &here, "contradiction", NULL, NULL,
-                          "a list of points has no lattice");
-    }
     struct scene_path clip = {.parent = path, .key = "clip"};
     bool clipped = false;
     for (size_t k = 0; k < reader->axis_count; k++)
         clipped |= body->clip_min[k] > -INFINITY || body->clip_max[k] < INFINITY;
-    if (listed && clipped)
+    if (json_object_get(given, "points") != NULL && clipped)
         scene_mistake(reader, &clip, "contradiction", NULL, NULL,
                       "a list of points is not clipped: leave points out instead");
-    struct scene_path first = {.parent = path, .key = keys[0]};
-    if (!listed && !known && json_is_object(given))
-        scene_mistake(reader, &first, "required", NULL, scene_word_list(keys),
-                      "one of these keys is required (lattice)");
 }
 
 static void check_shape(struct scene_reader *reader, const struct scene_path *path,
@@ -189,7 +179,7 @@ static void check_shape(struct scene_reader *reader, const struct scene_path *pa
                       "a cylinder needs the dimension \"solid\"");
     else if (body->from[0] == body->to[0] && body->from[1] == body->to[1] &&
              body->from[2] == body->to[2])
-        scene_mistake(reader, &end, "range", NULL, NULL, "'from' and 'to' are the same point");
+        scene_mistake(reader, &end, "direction", NULL, NULL, "'from' and 'to' are the same point");
 }
 
 static void read_body(struct scene_reader *reader, const struct scene_path *path,
@@ -216,7 +206,7 @@ static void read_body(struct scene_reader *reader, const struct scene_path *path
         body->lattice = TALUS_LATTICE_SPACING;
     else if (json_object_get(given, "count") != NULL)
         body->lattice = TALUS_LATTICE_COUNT;
-    check_lattice(reader, path, given, body);
+    check_clip(reader, path, given, body);
     check_shape(reader, path, body);
     body->name = scene_entry_name(reader, path, keys.name, "body", effective);
     memcpy(item, body, sizeof *body);

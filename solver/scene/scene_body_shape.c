@@ -28,13 +28,14 @@ static bool check_count(struct scene_reader *reader, const struct scene_path *pa
     return json_is_array(given) && count >= minimum && count <= maximum;
 }
 
+static const struct scene_field place_field = {.key = "place", .unit = "m"};
+
 /* Reads [[x, y], ...] into a new array with `stride` numbers a point (0 beyond the dimension).
  * NULL after a mistake. */
 static double *read_places(struct scene_reader *reader, const struct scene_path *path,
                            const json_t *given, size_t minimum, size_t maximum, size_t stride,
                            json_t *effective)
 {
-    static const struct scene_field place_field = {.key = "place", .unit = "m"};
     if (!check_count(reader, path, given, minimum, maximum))
         return NULL;
     const size_t count = json_array_size(given);
@@ -85,9 +86,9 @@ static void read_vertices(struct scene_reader *reader, const struct scene_path *
 
 static json_t *places_schema(size_t minimum, size_t maximum)
 {
-    return json_pack("{s:s, s:i, s:i, s:{s:s, s:i, s:i, s:{s:s}}}", "type", "array", "minItems",
-                     (int)minimum, "maxItems", (int)maximum, "items", "type", "array", "minItems",
-                     1, "maxItems", 3, "items", "type", "number");
+    return json_pack("{s:s, s:i, s:i, s:o}", "type", "array", "minItems", (int)minimum, "maxItems",
+                     (int)maximum, "items",
+                     scene_axes_schema(scene_number_schema(&place_field), 0));
 }
 
 static json_t *vertices_schema(void)
@@ -120,27 +121,33 @@ static json_t *positions_schema(void)
     return places_schema(1, POINT_MAX);
 }
 
+static const struct scene_field volume_field = {
+    .key = "volume", .unit = "m^3", .maximum = INFINITY, .above_minimum = true};
+
 static void read_volumes(struct scene_reader *reader, const struct scene_path *path,
                          const json_t *given, void *target, json_t *effective)
 {
-    static const struct scene_field volume_field = {
-        .key = "volume", .unit = "m^3", .maximum = INFINITY, .above_minimum = true};
     struct talus_body *body = target;
     json_t *list = json_array();
     const size_t count = body->point_count;
     scene_put(reader, effective, path->key, list);
-    if (count == 0 || !check_count(reader, path, given, count, count))
+    if (count == 0 || !check_count(reader, path, given, 1, POINT_MAX))
         return; /* without positions there is nothing to compare with */
+    if (json_array_size(given) != count)
+        scene_mistake(reader, path, "contradiction", NULL, NULL, "%zu volumes for %zu positions",
+                      json_array_size(given), count);
     body->point_volumes = calloc(count, sizeof *body->point_volumes);
     if (body->point_volumes == NULL) {
         reader->out_of_memory = true;
         return;
     }
-    for (size_t index = 0; index < count; index++) {
+    for (size_t index = 0; index < json_array_size(given); index++) {
         struct scene_path here = {.parent = path, .index = index};
-        if (!scene_number_read(reader, &here, &volume_field, json_array_get(given, index),
-                               &body->point_volumes[index]))
+        double volume;
+        if (!scene_number_read(reader, &here, &volume_field, json_array_get(given, index), &volume))
             return;
+        if (index < count)
+            body->point_volumes[index] = volume;
         if (json_array_append_new(list, json_real(body->point_volumes[index])) != 0)
             reader->out_of_memory = true;
     }
@@ -148,8 +155,8 @@ static void read_volumes(struct scene_reader *reader, const struct scene_path *p
 
 static json_t *volumes_schema(void)
 {
-    return json_pack("{s:s, s:i, s:i, s:{s:s, s:i}}", "type", "array", "minItems", 1, "maxItems",
-                     (int)POINT_MAX, "items", "type", "number", "exclusiveMinimum", 0);
+    return json_pack("{s:s, s:i, s:i, s:o}", "type", "array", "minItems", 1, "maxItems",
+                     (int)POINT_MAX, "items", scene_number_schema(&volume_field));
 }
 
 const struct scene_field scene_points_fields[] = {
@@ -208,11 +215,11 @@ static void finish_axis(struct scene_reader *reader, const struct scene_path *pa
         scene_mistake(reader, &here, "contradiction", NULL, NULL,
                       "in two dimensions a body turns in the plane");
     else if (reader->axis_count == 3 && !known)
-        scene_mistake(reader, &here, "required", NULL, NULL, "'axis' is required in 3D");
+        scene_mistake(reader, &here, "incomplete", NULL, NULL, "'axis' is required in 3D");
     for (size_t k = 0; k < 3; k++)
         square += axis[k] * axis[k];
     if (known && square == 0.0)
-        scene_mistake(reader, &here, "range", NULL, NULL, "the axis has no direction");
+        scene_mistake(reader, &here, "direction", NULL, NULL, "the axis has no direction");
     for (size_t k = 0; k < 3; k++)
         axis[k] = reader->axis_count == 3 ? axis[k] / sqrt(square) : (double)(k == 2);
 }

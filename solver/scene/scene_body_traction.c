@@ -63,21 +63,67 @@ static json_t *pressure_schema(void)
     return scene_timed_number_schema(&pressure_field);
 }
 
-static void read_nothing(struct scene_reader *reader, const struct scene_path *path,
-                         const json_t *given, void *target, json_t *effective)
+/* Words of the faces of shapes that have a few. */
+static const char *const box_words[] = {"x_min", "x_max", "y_min", "y_max", "z_min", "z_max", NULL};
+static const char *const sphere_words[] = {"outside", NULL};
+static const char *const cylinder_words[] = {"outside", "from", "to", NULL};
+
+/* A prefix and a number with at most five digits; returns what follows, or NULL. */
+static const char *read_index(const char *text, const char *prefix, size_t *index)
+{
+    enum { DIGIT_MAX = 5 };
+    const size_t length = strlen(prefix);
+    if (text == NULL || strncmp(text, prefix, length) != 0)
+        return NULL;
+    const size_t digits = strspn(text + length, "0123456789");
+    *index = (size_t)strtoul(text + length, NULL, 10);
+    return digits > 0 && digits <= DIGIT_MAX ? text + length + digits : NULL;
+}
+
+/* "side_A" or "side_A_to_B". */
+static bool read_sides(const char *word, size_t side_count, struct talus_traction *traction)
+{
+    const char *rest = read_index(word, "side_", &traction->face);
+    traction->last_face = traction->face;
+    if (rest != NULL && rest[0] != '\0')
+        rest = read_index(rest, "_to_", &traction->last_face);
+    return rest != NULL && rest[0] == '\0' && traction->face < side_count &&
+           traction->last_face < side_count;
+}
+
+/* Whether this is the name of a face of some body. */
+static bool names_face(const char *word)
+{
+    struct talus_traction traction;
+    const char *const *const lists[] = {box_words, sphere_words, cylinder_words};
+    for (size_t list = 0; list < sizeof lists / sizeof lists[0]; list++) {
+        for (const char *const *entry = lists[list]; *entry != NULL; entry++) {
+            if (strcmp(*entry, word) == 0)
+                return true;
+        }
+    }
+    return read_sides(word, SIZE_MAX, &traction);
+}
+
+static void read_face(struct scene_reader *reader, const struct scene_path *path,
+                      const json_t *given, void *target, json_t *effective)
 {
     (void)target; /* the face is read when the shape of the body is known */
-    if (json_is_string(given))
-        scene_put(reader, effective, path->key, json_string(json_string_value(given)));
-    else
+    if (!json_is_string(given))
         scene_mistake(reader, path, "type", given, json_string("string"),
                       "expected the name of a face, not %s", scene_type_word(given));
+    else if (!names_face(json_string_value(given)))
+        scene_mistake(reader, path, "unknown_value", given, NULL,
+                      "there is no face of that name: box: x_min ... z_max; polygon: side_0, "
+                      "side_3_to_7, ...; sphere: outside; cylinder: outside, from, to");
+    else
+        scene_put(reader, effective, path->key, json_string(json_string_value(given)));
 }
 
 static json_t *face_schema(void)
 {
     return json_pack("{s:s, s:s}", "type", "string", "pattern",
-                     "^([xyz]_(min|max)|side_[0-9]+(_to_[0-9]+)?|outside|from|to)$");
+                     "^([xyz]_(min|max)|side_[0-9]{1,5}(_to_[0-9]{1,5})?|outside|from|to)$");
 }
 
 static const struct scene_field traction_fields[] = {
@@ -85,7 +131,7 @@ static const struct scene_field traction_fields[] = {
      .kind = SCENE_CUSTOM,
      .unit = "1",
      .required = true,
-     .read = read_nothing,
+     .read = read_face,
      .schema = face_schema,
      .meaning = "box: x_min ... z_max; polygon: side_0 (from vertex 0 to 1), side_3_to_7, ...; "
                 "sphere: outside; cylinder: outside, from, to"},
@@ -115,41 +161,13 @@ static const struct scene_field traction_fields[] = {
     {.key = NULL},
 };
 
-/* Words of the faces of shapes that have a few. */
-static const char *const box_words[] = {"x_min", "x_max", "y_min", "y_max", "z_min", "z_max", NULL};
-static const char *const sphere_words[] = {"outside", NULL};
-static const char *const cylinder_words[] = {"outside", "from", "to", NULL};
-
-/* A prefix and a number with at most five digits; returns what follows, or NULL. */
-static const char *read_index(const char *text, const char *prefix, size_t *index)
-{
-    enum { DIGIT_MAX = 5 };
-    const size_t length = strlen(prefix);
-    if (text == NULL || strncmp(text, prefix, length) != 0)
-        return NULL;
-    const size_t digits = strspn(text + length, "0123456789");
-    *index = (size_t)strtoul(text + length, NULL, 10);
-    return digits > 0 && digits <= DIGIT_MAX ? text + length + digits : NULL;
-}
-
-/* "side_A" or "side_A_to_B". */
-static bool read_sides(const char *word, size_t side_count, struct talus_traction *traction)
-{
-    const char *rest = read_index(word, "side_", &traction->face);
-    traction->last_face = traction->face;
-    if (rest != NULL && rest[0] != '\0')
-        rest = read_index(rest, "_to_", &traction->last_face);
-    return rest != NULL && rest[0] == '\0' && traction->face < side_count &&
-           traction->last_face < side_count;
-}
-
 static void find_side(struct scene_reader *reader, const struct scene_path *path,
                       const json_t *given, const struct talus_body *body,
                       struct talus_traction *traction)
 {
     if (body->vertex_count > 0 &&
         !read_sides(json_string_value(given), body->vertex_count, traction))
-        scene_mistake(reader, path, "unknown_value", given, NULL,
+        scene_mistake(reader, path, "contradiction", given, NULL,
                       "expected \"side_0\" ... \"side_%zu\" (side k runs from vertex k to the "
                       "next), or several as \"side_3_to_7\"",
                       body->vertex_count - 1);
@@ -167,9 +185,14 @@ static void find_word(struct scene_reader *reader, const struct scene_path *path
         memcpy(words, sphere_words, sizeof sphere_words);
     else
         memcpy(words, cylinder_words, sizeof cylinder_words);
-    const int face = scene_choice_read(reader, path, given, words, NULL);
-    if (face >= 0)
-        traction->face = (size_t)face;
+    for (size_t face = 0; words[face] != NULL; face++) {
+        if (strcmp(words[face], json_string_value(given)) == 0) {
+            traction->face = face;
+            return;
+        }
+    }
+    scene_mistake(reader, path, "contradiction", given, scene_word_list(words),
+                  "this body has no such face");
 }
 
 /* What is unclear is refused: a clip takes away an unknown part of what is not a box. */
@@ -200,7 +223,8 @@ static void finish_traction(struct scene_reader *reader, const struct scene_path
     struct scene_path face = {.parent = path, .key = "face"};
     struct scene_path kind = {.parent = path, .key = "kind"};
     const json_t *word = json_object_get(given, "face");
-    if (json_is_string(word) && has_faces(reader, &face, body)) {
+    if (json_is_string(word) && names_face(json_string_value(word)) &&
+        has_faces(reader, &face, body)) {
         if (body->shape == TALUS_BODY_POLYGON)
             find_side(reader, &face, word, body, traction);
         else
@@ -242,5 +266,7 @@ void scene_body_traction_read(struct scene_reader *reader, const struct scene_pa
 
 json_t *scene_body_traction_schema(void)
 {
-    return scene_list_schema(traction_fields, 0);
+    json_t *schema = scene_list_schema(traction_fields, 0);
+    (void)json_object_set_new(schema, "maxItems", json_integer(TRACTION_MAX));
+    return schema;
 }

@@ -38,8 +38,9 @@ static void read_rate(struct scene_reader *reader, const struct scene_path *path
 
 static json_t *rate_schema(void)
 {
-    return json_pack("{s:[{s:s}, {s:s, s:i, s:i, s:{s:s}}]}", "oneOf", "type", "number", "type",
-                     "array", "minItems", 3, "maxItems", 3, "items", "type", "number");
+    return scene_turn_schema(json_pack(
+        "{s:[o, {s:s, s:i, s:i, s:o}]}", "oneOf", scene_number_schema(&rate_field), "type", "array",
+        "minItems", 3, "maxItems", 3, "items", scene_number_schema(&rate_field)));
 }
 
 static const struct scene_field rotation_fields[] = {
@@ -123,7 +124,7 @@ static void check_beam(struct scene_reader *reader, const struct scene_path *pat
         along += step * body->beam_tip[k];
     }
     if (length == 0.0)
-        scene_mistake(reader, &end, "range", NULL, NULL, "'from' and 'to' are the same point");
+        scene_mistake(reader, &end, "direction", NULL, NULL, "'from' and 'to' are the same point");
     else if (along * along > 1e-18 * length * speed)
         scene_mistake(reader, &tip, "contradiction", NULL, NULL,
                       "the free end moves perpendicular to the axis of the beam");

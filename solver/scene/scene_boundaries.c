@@ -82,9 +82,13 @@ static void read_faces(struct scene_reader *reader, const struct scene_path *pat
         while (words[face] != NULL && strcmp(words[face], key) != 0)
             face++;
         if (words[face] == NULL) {
-            scene_mistake(reader, &here, "unknown_key", NULL, scene_word_list(words),
-                          "unknown face '%.60s'", key);
-            continue;
+            bool other = strcmp(key, "y_min") == 0 || strcmp(key, "y_max") == 0 ||
+                         strcmp(key, "z_min") == 0 || strcmp(key, "z_max") == 0;
+            scene_mistake(reader, &here, other ? "dimension" : "unknown_key", NULL,
+                          scene_word_list(words), "unknown face '%.60s'", key);
+            if (!other)
+                continue;
+            face = 0; /* nobody reads a scene with a mistake */
         }
         json_t *entry = json_object();
         scene_fields_read(reader, &here, scene_condition_fields, value, &keys->faces[face], entry);
@@ -97,16 +101,20 @@ static void read_faces(struct scene_reader *reader, const struct scene_path *pat
 static json_t *faces_schema(void)
 {
     json_t *properties = json_object();
-    for (const char *const *word = face_words; *word != NULL; word++)
-        (void)json_object_set_new(properties, *word, scene_fields_schema(scene_condition_fields));
+    for (const char *const *word = face_words; *word != NULL; word++) {
+        json_t *face = scene_fields_schema(scene_condition_fields);
+        scene_condition_rules_add(face);
+        (void)json_object_set_new(properties, *word, face);
+    }
     return json_pack("{s:s, s:b, s:o}", "type", "object", "additionalProperties", 0, "properties",
                      properties);
 }
 
+static const struct scene_field force_field = {.key = "tension_release", .unit = "N"};
+
 static void read_tension(struct scene_reader *reader, const struct scene_path *path,
                          const json_t *given, void *target, json_t *effective)
 {
-    static const struct scene_field force_field = {.key = "tension_release", .unit = "N"};
     struct talus_boundary *boundary = &((struct boundary_keys *)target)->boundary;
     if (json_is_number(given)) {
         boundary->tension_release =
@@ -123,7 +131,8 @@ static void read_tension(struct scene_reader *reader, const struct scene_path *p
 
 static json_t *tension_schema(void)
 {
-    return json_pack("{s:[s, s]}", "type", "boolean", "number");
+    return json_pack("{s:[{s:s}, o]}", "oneOf", "type", "boolean",
+                     scene_number_schema(&force_field));
 }
 
 static void read_body(struct scene_reader *reader, const struct scene_path *path,
@@ -311,7 +320,7 @@ static void finish_box(struct scene_reader *reader, const struct scene_path *pat
     for (size_t k = 0; k < reader->axis_count; k++) {
         struct scene_path here = {.parent = &corner, .index = k};
         if (boundary->box_max[k] <= boundary->box_min[k])
-            scene_mistake(reader, &here, "range", NULL, NULL, "max %g must be above min %g",
+            scene_mistake(reader, &here, "order", NULL, NULL, "max %g must be above min %g",
                           boundary->box_max[k], boundary->box_min[k]);
     }
 }
@@ -340,10 +349,10 @@ static void finish_shape(struct scene_reader *reader, const struct scene_path *p
 
 /* Bodies share one velocity field: only particles can be told apart, not what moves a node. */
 static void check_filter(struct scene_reader *reader, const struct scene_path *path,
-                         const struct boundary_keys *keys)
+                         const json_t *given, const struct boundary_keys *keys)
 {
     struct scene_path here = {.parent = path, .key = "body"};
-    if (keys->boundary.body_index >= 0 && keys->condition.index != SIZE_MAX &&
+    if (json_object_get(given, "body") != NULL && keys->condition.index != SIZE_MAX &&
         !scene_condition_eliminates(keys->condition.index))
         scene_mistake(reader, &here, "unsupported", NULL, NULL,
                       "only the condition \"eliminate\" can act on one body in this build");
@@ -363,7 +372,7 @@ static void read_boundary(struct scene_reader *reader, const struct scene_path *
     scene_fields_read(reader, path, scene_boundary_fields, given, &keys, effective);
     finish_shape(reader, path, given, &keys, effective);
     scene_boundary_motion_finish(reader, path, given, &keys, effective);
-    check_filter(reader, path, &keys);
+    check_filter(reader, path, given, &keys);
     finish_moment(reader, &keys, effective);
     keys.boundary.name = scene_entry_name(reader, path, keys.name, "boundary", effective);
     memcpy(item, &keys.boundary, sizeof keys.boundary);
@@ -385,5 +394,13 @@ void scene_boundaries_read(struct scene_reader *reader, const struct scene_path 
 
 json_t *scene_boundaries_schema(void)
 {
-    return scene_list_schema(scene_boundary_fields, 0);
+    json_t *schema = scene_list_schema(scene_boundary_fields, 0);
+    json_t *entry = json_object_get(schema, "items");
+    scene_condition_rules_add(entry);
+    for (size_t index = 0; scene_condition_name(index) != NULL; index++) {
+        static const char *const filter[] = {"body", NULL};
+        if (!scene_condition_eliminates(index)) /* check_filter */
+            scene_rule_add(entry, "condition", scene_condition_name(index), filter, filter + 1);
+    }
+    return schema;
 }

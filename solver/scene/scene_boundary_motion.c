@@ -35,15 +35,20 @@ void scene_boundary_components_read(struct scene_reader *reader, const struct sc
     const char *words[10];
     if (given == NULL)
         return;
-    if (!json_is_array(given) || json_array_size(given) == 0) {
-        scene_mistake(reader, path, "type", given, json_string("[\"x\", ...]"),
-                      "expected a list of axes");
+    if (!json_is_array(given) || json_array_size(given) == 0 || json_array_size(given) > 3) {
+        scene_mistake(reader, path, json_is_array(given) ? "length" : "type", given,
+                      json_string("[\"x\", ...]"), "expected a list of 1 to 3 axes");
         return;
     }
     scene_component_words(3, reader->axis_count, words);
     for (size_t index = 0; index < json_array_size(given); index++) {
         struct scene_path here = {.parent = path, .index = index};
         const int axis = scene_component_read(reader, &here, json_array_get(given, index), words);
+        for (size_t before = 0; before < index; before++) {
+            if (json_equal(json_array_get(given, before), json_array_get(given, index)))
+                scene_mistake(reader, &here, "duplicate", json_array_get(given, index), NULL,
+                              "the axis is there twice");
+        }
         if (axis >= 0)
             boundary->prescribed |= 1u << axis;
     }
@@ -88,7 +93,7 @@ static void finish_velocity(struct scene_reader *reader, const struct scene_path
         struct scene_path velocity = {.parent = path, .key = "velocity"};
         struct scene_path wall = {.parent = path, .key = "wall"};
         if (json_object_get(given, "velocity") == NULL)
-            scene_mistake(reader, &velocity, "required", NULL, NULL,
+            scene_mistake(reader, &velocity, "incomplete", NULL, NULL,
                           "the condition \"velocity\" needs 'velocity'");
         if (boundary->wall == TALUS_WALL_KEEP)
             scene_mistake(reader, &wall, "contradiction", NULL, NULL,
@@ -120,6 +125,6 @@ void scene_boundary_motion_finish(struct scene_reader *reader, const struct scen
     if (boundary->from < boundary->until)
         return;
     struct scene_path until = {.parent = path, .key = "until"};
-    scene_mistake(reader, &until, "range", NULL, NULL, "until %g s must be after from %g s",
+    scene_mistake(reader, &until, "order", NULL, NULL, "until %g s must be after from %g s",
                   boundary->until, boundary->from);
 }

@@ -31,7 +31,7 @@ static void check_bodies(struct scene_reader *reader)
         return;
     seeding_count(scene, &particles, &cells);
     if (particles > SEEDING_PARTICLE_MAX)
-        scene_mistake_at(reader, "/bodies", "range",
+        scene_mistake_at(reader, "/bodies", "limit",
                          "all bodies together ask for more than 200 million particles");
 }
 
@@ -227,7 +227,7 @@ static void check_settling(struct scene_reader *reader)
     const struct talus_scene *scene = reader->scene;
     struct scene_path bodies = {.key = "bodies"};
     if (scene->solver.settle_damping > 0.0 && scene->solver.settle_time == 0.0)
-        scene_mistake_at(reader, "/solver/stabilise/settle/time", "required",
+        scene_mistake_at(reader, "/solver/stabilise/settle/time", "incomplete",
                          "damping acts in the time before t = 0, of which there is none");
     for (size_t index = 0; index < scene->body_count && scene->solver.settle_time > 0.0; index++) {
         const struct talus_body *body = &scene->bodies[index];

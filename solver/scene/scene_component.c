@@ -12,6 +12,9 @@ const char *const scene_field_words[] = {
     NULL,
 };
 
+const char *const scene_component_names[] = {"x",  "y",  "z",  "xx", "xy", "xz", "yx",
+                                             "yy", "yz", "zx", "zy", "zz", NULL};
+
 size_t scene_field_components(size_t field)
 {
     static const size_t counts[] = {
@@ -59,10 +62,11 @@ int scene_component_read(struct scene_reader *reader, const struct scene_path *p
         if (words[index][0] != '\0')
             shown[shown_count++] = words[index];
     }
-    if (shown_count == 0)
+    if (shown_count > 0 && scene_choice_read(reader, path, given, scene_component_names, NULL) >= 0)
+        scene_mistake(reader, path, "dimension", given, scene_word_list(shown),
+                      "there is no such component here");
+    else if (shown_count == 0)
         scene_mistake(reader, path, "contradiction", given, NULL,
                       "this quantity has no components");
-    else
-        (void)scene_choice_read(reader, path, given, shown, NULL);
     return -1;
 }

@@ -14,6 +14,8 @@ void scene_component_words(size_t count, size_t axis_count, const char *words[10
 int scene_component_read(struct scene_reader *reader, const struct scene_path *path,
                          const json_t *given, const char *const words[10]);
 
+/* x, y, z and all of a matrix, NULL-terminated: what a component can be called at all. */
+extern const char *const scene_component_names[];
 extern const char *const scene_field_words[]; /* of fields.def, NULL-terminated */
 size_t scene_field_components(size_t field);
 

@@ -35,6 +35,10 @@ json_t *scene_condition_name_schema(void)
     return json_pack("{s:o}", "enum", scene_word_list(condition_words));
 }
 
+static const char *const own_keys[] = {"friction_coefficient", "friction_angle", "adhesion",
+                                       "turbulence"};
+enum { OWN_KEY_COUNT = sizeof own_keys / sizeof own_keys[0] };
+
 static bool has_parameter(const struct boundary_condition *condition, const char *key)
 {
     const struct parameter *parameter = condition->parameters;
@@ -47,14 +51,12 @@ static bool has_parameter(const struct boundary_condition *condition, const char
 static void refuse_keys(struct scene_reader *reader, const struct scene_path *path,
                         const json_t *given, size_t index)
 {
-    static const char *const keys[] = {"friction_coefficient", "friction_angle", "adhesion",
-                                       "turbulence"};
-    for (size_t key = 0; key < sizeof keys / sizeof keys[0]; key++) {
-        struct scene_path here = {.parent = path, .key = keys[key]};
-        if (json_object_get(given, keys[key]) != NULL &&
-            !has_parameter(boundary_table[index], keys[key]))
-            scene_mistake(reader, &here, "contradiction", NULL, NULL,
-                          "'%s' does not apply to the condition \"%s\"", keys[key],
+    for (size_t key = 0; key < OWN_KEY_COUNT; key++) {
+        struct scene_path here = {.parent = path, .key = own_keys[key]};
+        if (json_object_get(given, own_keys[key]) != NULL &&
+            !has_parameter(boundary_table[index], own_keys[key]))
+            scene_mistake(reader, &here, "unknown_key", NULL, NULL,
+                          "'%s' does not apply to the condition \"%s\"", own_keys[key],
                           condition_words[index]);
     }
 }
@@ -82,6 +84,27 @@ void scene_condition_finish(struct scene_reader *reader, const struct scene_path
                                        : given_or_zero(condition->friction_coefficient);
     face->adhesion = given_or_zero(condition->adhesion);
     face->turbulence = given_or_zero(condition->turbulence);
+}
+
+void scene_condition_rules_add(json_t *schema)
+{
+    static const char *const none[] = {NULL};
+    for (size_t index = 0; index < boundary_count; index++) {
+        const char *without[OWN_KEY_COUNT + 1] = {NULL};
+        size_t count = 0;
+        for (size_t key = 0; key < OWN_KEY_COUNT; key++) {
+            if (!has_parameter(boundary_table[index], own_keys[key]))
+                without[count++] = own_keys[key];
+        }
+        scene_rule_add(schema, "condition", condition_words[index], without, none);
+        if (!has_parameter(boundary_table[index], own_keys[0]))
+            continue;
+        json_t *rules = json_object_get(schema, "allOf");
+        json_t *then = json_object_get(json_array_get(rules, json_array_size(rules) - 1), "then");
+        (void)json_object_set_new(then, "anyOf",
+                                  json_pack("[{s:[s]}, {s:[s]}]", "required",
+                                            "friction_coefficient", "required", "friction_angle"));
+    }
 }
 
 void scene_condition_init(struct scene_condition *condition)

@@ -56,6 +56,8 @@ extern const struct scene_field scene_condition_fields[];
 void scene_condition_name_read(struct scene_reader *reader, const struct scene_path *path,
                                const json_t *given, void *target, json_t *effective);
 json_t *scene_condition_name_schema(void);
+/* Adds to the schema of an object with these fields what each condition needs and does not know. */
+void scene_condition_rules_add(json_t *schema);
 
 /* Nothing given yet. */
 void scene_condition_init(struct scene_condition *condition);

@@ -41,6 +41,19 @@ static json_t *describe_transfers(void)
     return list;
 }
 
+static json_t *describe_codes(void)
+{
+    enum { STRUCTURE, MEANING, FORM };
+    static const char *const classes[] = {"structure", "meaning", "form"};
+    json_t *list = json_array();
+#define SCENE_CODE(code, CLASS, text)                                                              \
+    (void)json_array_append_new(list, json_pack("{s:s, s:s, s:s}", "code", #code, "class",         \
+                                                classes[CLASS], "meaning", text));
+#include "scene/scene_codes.def"
+#undef SCENE_CODE
+    return list;
+}
+
 json_t *scene_describe(void)
 {
     static const struct {
@@ -62,5 +75,6 @@ json_t *scene_describe(void)
     (void)json_object_set_new(answer, "transfers", describe_transfers());
     (void)json_object_set_new(answer, "conditions", scene_conditions_describe());
     (void)json_object_set_new(answer, "fields", describe_particle_fields());
+    (void)json_object_set_new(answer, "codes", describe_codes());
     return answer;
 }

@@ -36,6 +36,7 @@ static const struct scene_field face_fields[] = {
      .default_value = NAN,
      .alternative = "extent",
      .required = true,
+     .needs = "min",
      .offset = AT(max),
      .meaning = "upper corner, with min"},
     {.key = "size",
@@ -43,6 +44,7 @@ static const struct scene_field face_fields[] = {
      .unit = "m",
      .required = true,
      .alternative = "extent",
+     .needs = "point",
      .read = read_size,
      .schema = size_schema,
      .meaning = "full lengths along t1 and t2, with point"},
@@ -57,11 +59,12 @@ static const struct scene_field face_fields[] = {
     {.key = NULL},
 };
 
+static const struct scene_field size_field = {
+    .key = "size", .unit = "m", .above_minimum = true, .maximum = INFINITY};
+
 static void read_size(struct scene_reader *reader, const struct scene_path *path,
                       const json_t *given, void *target, json_t *effective)
 {
-    static const struct scene_field length = {
-        .key = "size", .unit = "m", .above_minimum = true, .maximum = INFINITY};
     struct face_keys *keys = target;
     size_t expected = reader->axis_count > 0 ? reader->axis_count - 1 : json_array_size(given);
     if (!json_is_array(given) || json_array_size(given) != expected || expected > 2) {
@@ -72,7 +75,8 @@ static void read_size(struct scene_reader *reader, const struct scene_path *path
     json_t *list = json_array();
     for (size_t k = 0; k < expected; k++) {
         struct scene_path here = {.parent = path, .index = k};
-        if (!scene_number_read(reader, &here, &length, json_array_get(given, k), &keys->size[k]))
+        if (!scene_number_read(reader, &here, &size_field, json_array_get(given, k),
+                               &keys->size[k]))
             keys->size[k] = 1.0;
         if (json_array_append_new(list, json_real(keys->size[k])) != 0)
             reader->out_of_memory = true;
@@ -82,8 +86,7 @@ static void read_size(struct scene_reader *reader, const struct scene_path *path
 
 static json_t *size_schema(void)
 {
-    return json_pack("{s:s, s:i, s:i, s:{s:s, s:i}}", "type", "array", "minItems", 0, "maxItems", 2,
-                     "items", "type", "number", "exclusiveMinimum", 0);
+    return scene_axes_schema(scene_number_schema(&size_field), -1);
 }
 
 bool scene_direction_normalise(struct scene_reader *reader, const struct scene_path *path,
@@ -93,7 +96,7 @@ bool scene_direction_normalise(struct scene_reader *reader, const struct scene_p
     if (isnan(length))
         return false;
     if (!(length > 1e-12)) {
-        scene_mistake(reader, path, "range", NULL, NULL, "a direction needs a length");
+        scene_mistake(reader, path, "direction", NULL, NULL, "a direction needs a length");
         return false;
     }
     json_t *list = json_array();
@@ -150,7 +153,7 @@ static void from_corners(struct scene_reader *reader, const struct scene_path *p
         aligned &= (extent[k] == 0.0) == (fabs(boundary->normal[k]) > 1.0 - 1e-12);
         boundary->point[k] = 0.5 * (keys->min[k] + keys->max[k]);
         if (extent[k] < 0.0)
-            scene_mistake(reader, &here, "range", NULL, NULL, "max %g must not be below min %g",
+            scene_mistake(reader, &here, "order", NULL, NULL, "max %g must not be below min %g",
                           keys->max[k], keys->min[k]);
     }
     if (flat_count != 1)
@@ -176,11 +179,6 @@ void scene_face_read(struct scene_reader *reader, const struct scene_path *path,
     json_t *inner = json_object();
     scene_put(reader, effective, path->key, inner);
     scene_fields_read(reader, path, face_fields, given, &keys, inner);
-    struct scene_path extent = {.parent = path, .key = isnan(keys.min[0]) ? "max" : "size"};
-    if (json_object_get(given, "min") != NULL && json_object_get(given, "size") != NULL)
-        scene_mistake(reader, &extent, "contradiction", NULL, NULL, "'min' goes with 'max'");
-    if (json_object_get(given, "point") != NULL && json_object_get(given, "max") != NULL)
-        scene_mistake(reader, &extent, "contradiction", NULL, NULL, "'point' goes with 'size'");
     if (reader->issues->count != mistakes || reader->axis_count == 0)
         return;
     memcpy(boundary->normal, keys.normal, sizeof boundary->normal);

@@ -44,10 +44,10 @@ static void check_keys(struct scene_reader *reader, const struct scene_path *pat
     }
 }
 
-static bool same_alternative(const struct scene_field *a, const struct scene_field *b)
+bool scene_field_in_group(const struct scene_field *field, const char *group)
 {
-    return a->alternative != NULL && b->alternative != NULL &&
-           strcmp(a->alternative, b->alternative) == 0;
+    return (field->alternative != NULL && strcmp(field->alternative, group) == 0) ||
+           (field->also != NULL && strcmp(field->also, group) == 0);
 }
 
 /* True if another field of the same group of alternatives is given. */
@@ -55,48 +55,83 @@ static bool other_is_given(const struct scene_field *table, const struct scene_f
                            const json_t *object)
 {
     for (const struct scene_field *other = table; other->key != NULL; other++) {
-        if (other != field && same_alternative(field, other) &&
+        if (other != field && field->alternative != NULL &&
+            scene_field_in_group(other, field->alternative) &&
             json_object_get(object, other->key) != NULL)
             return true;
     }
     return false;
 }
 
-/* Checks the group of which `first` is the first field of the table. */
-static void check_group(struct scene_reader *reader, const struct scene_path *path,
-                        const struct scene_field *first, const json_t *object)
+struct group_check {
+    struct scene_reader *reader;
+    const struct scene_path *path;
+    const json_t *object;
+};
+
+static void check_group(const struct scene_field *table, const char *group, bool required,
+                        void *context)
 {
+    const struct group_check *check = context;
     const struct scene_field *given = NULL;
-    const char *words[KEY_MAX + 1] = {NULL};
+    const char *words[KEY_MAX + 1] = {NULL}, *first = NULL;
     size_t count = 0;
-    for (const struct scene_field *field = first; field->key != NULL; field++) {
-        if (!same_alternative(first, field))
+    for (const struct scene_field *field = table; field->key != NULL; field++) {
+        if (!scene_field_in_group(field, group))
             continue;
+        if (first == NULL && field->also == NULL)
+            first = field->key;
         if (!field->unsupported && count < KEY_MAX)
             words[count++] = field->key;
-        if (json_object_get(object, field->key) == NULL)
+        if (json_object_get(check->object, field->key) == NULL)
             continue;
-        struct scene_path here = {.parent = path, .key = field->key};
+        struct scene_path here = {.parent = check->path, .key = field->key};
         if (given != NULL && !given->unsupported && !field->unsupported)
-            scene_mistake(reader, &here, "contradiction", NULL, scene_word_list(words),
+            scene_mistake(check->reader, &here, "alternative", NULL, scene_word_list(words),
                           "'%s' and '%s' exclude each other", given->key, field->key);
         given = field;
     }
-    struct scene_path here = {.parent = path, .key = first->key};
-    if (given == NULL && first->required)
-        scene_mistake(reader, &here, "required", NULL, scene_word_list(words),
-                      "one of these keys is required (%s)", first->alternative);
+    struct scene_path here = {.parent = check->path, .key = first};
+    if (given == NULL && required)
+        scene_mistake(check->reader, &here, "required", NULL, scene_word_list(words),
+                      "one of these keys is required (%s)", group);
 }
 
-static void check_alternatives(struct scene_reader *reader, const struct scene_path *path,
-                               const struct scene_field *table, const json_t *object)
+/* True if no field before this one belongs to the group. */
+static bool opens_group(const struct scene_field *table, const struct scene_field *field,
+                        const char *group)
+{
+    for (; group != NULL && table < field; table++) {
+        if (scene_field_in_group(table, group))
+            return false;
+    }
+    return group != NULL;
+}
+
+void scene_groups_visit(const struct scene_field *table,
+                        void (*visit)(const struct scene_field *table, const char *group,
+                                      bool required, void *context),
+                        void *context)
 {
     for (const struct scene_field *field = table; field->key != NULL; field++) {
-        bool first = field->alternative != NULL;
-        for (const struct scene_field *before = table; before < field && first; before++)
-            first = !same_alternative(before, field);
-        if (first)
-            check_group(reader, path, field, object);
+        if (opens_group(table, field, field->alternative))
+            visit(table, field->alternative, field->required, context);
+        if (opens_group(table, field, field->also))
+            visit(table, field->also, field->required, context);
+    }
+}
+
+/* Keys that are given without the one that they belong to. */
+static void check_needs(struct scene_reader *reader, const struct scene_path *path,
+                        const struct scene_field *table, const json_t *object)
+{
+    for (; table->key != NULL; table++) {
+        if (table->needs == NULL || json_object_get(object, table->key) == NULL ||
+            json_object_get(object, table->needs) != NULL)
+            continue;
+        struct scene_path here = {.parent = path, .key = table->needs};
+        scene_mistake(reader, &here, "required", NULL, NULL, "'%s' needs '%s'", table->key,
+                      table->needs);
     }
 }
 
@@ -230,9 +265,9 @@ static void read_text(const struct place *place)
     } else if (field->kind == SCENE_NAME && !is_name(text)) {
         scene_mistake(place->reader, &place->path, "name", place->given, NULL,
                       "a name has 1 to 48 letters, digits, '_' and '-'");
-    } else if (strlen(text) > TEXT_MAX_LENGTH) {
-        scene_mistake(place->reader, &place->path, "range", NULL, NULL,
-                      "a text has at most %d bytes", TEXT_MAX_LENGTH);
+    } else if (scene_character_count(text) > TEXT_MAX_LENGTH) {
+        scene_mistake(place->reader, &place->path, "length", NULL, NULL,
+                      "a text has at most %d characters", TEXT_MAX_LENGTH);
     } else {
         store(field, place->target, &text, sizeof text);
         scene_put(place->reader, place->effective, field->key, json_string(text));
@@ -301,7 +336,9 @@ void scene_fields_read(struct scene_reader *reader, const struct scene_path *pat
     }
     if (object != NULL)
         check_keys(reader, path, table, object);
-    check_alternatives(reader, path, table, object);
+    struct group_check check = {.reader = reader, .path = path, .object = object};
+    scene_groups_visit(table, check_group, &check);
+    check_needs(reader, path, table, object);
     for (const struct scene_field *field = table; field->key != NULL; field++) {
         struct place place = {
             .reader = reader,

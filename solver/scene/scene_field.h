@@ -39,6 +39,8 @@ struct scene_field {
     double default_value;    /* NAN: none; choices: index; booleans: 0 or 1; vectors: each part */
     const char *alternative; /* of the fields with the same word exactly one (required) or at most
                                 one may be given */
+    const char *also;        /* a second group of alternatives that it belongs to */
+    const char *needs;       /* the key without which this one has no meaning */
     const char *const *choices; /* NULL-terminated */
     const char *const *lacking; /* words that are promised and not in this build, or NULL */
     const char *word;           /* number: a word that may stand for `word_value` */
@@ -71,6 +73,8 @@ const struct scene_field *scene_field_find(const struct scene_field *table, cons
  * kind says). */
 bool scene_field_is_default(const struct scene_field *field, const void *target);
 
+/* The bounds of a number, which are never further than 1e30 from zero. */
+void scene_bounds_read(const struct scene_field *field, double *minimum, double *maximum);
 /* Reads one number; false (and a mistake) if it is not one or out of bounds. */
 bool scene_number_read(struct scene_reader *reader, const struct scene_path *path,
                        const struct scene_field *field, const json_t *given, double *value);
@@ -90,9 +94,27 @@ int scene_choice_read(struct scene_reader *reader, const struct scene_path *path
 int scene_name_find(struct scene_reader *reader, const struct scene_path *path, const char *what,
                     const json_t *given, const char *const *names, size_t count);
 
+/* True if the field belongs to that group of alternatives. */
+bool scene_field_in_group(const struct scene_field *field, const char *group);
+/* Calls `visit` once for every group of alternatives of a table: `required`: one must be given. */
+void scene_groups_visit(const struct scene_field *table,
+                        void (*visit)(const struct scene_field *table, const char *group,
+                                      bool required, void *context),
+                        void *context);
+
 /* JSON Schema of an object with this table; new reference. */
 json_t *scene_fields_schema(const struct scene_field *table);
 json_t *scene_field_schema(const struct scene_field *field);
+/* Of one number: its type and bounds, without a word. */
+json_t *scene_number_schema(const struct scene_field *field);
+/* Of an array with as many entries as the scene has axes, plus `more`; takes the reference. */
+json_t *scene_axes_schema(json_t *items, int more);
+/* Marks a schema of a number or a vector: a number in a plane, a vector in space. */
+json_t *scene_turn_schema(json_t *schema);
+/* Puts a rule for objects in which `key` is `word`: keys that they must not have and keys that they
+ * must have (NULL-terminated). */
+void scene_rule_add(json_t *schema, const char *key, const char *word, const char *const *without,
+                    const char *const *with);
 /* [{"key","type","unit","minimum",...,"meaning"}] of a table, nested ones included. */
 json_t *scene_fields_describe(const struct scene_field *table);
 

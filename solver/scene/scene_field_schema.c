@@ -25,10 +25,19 @@ static void put_bounds(json_t *schema, const struct scene_field *field)
             json_real(field->maximum));
 }
 
+json_t *scene_number_schema(const struct scene_field *field)
+{
+    double minimum, maximum;
+    json_t *number = json_pack("{s:s}", "type", field->whole ? "integer" : "number");
+    scene_bounds_read(field, &minimum, &maximum);
+    put(number, field->above_minimum ? "exclusiveMinimum" : "minimum", json_real(minimum));
+    put(number, field->below_maximum ? "exclusiveMaximum" : "maximum", json_real(maximum));
+    return number;
+}
+
 static json_t *number_schema(const struct scene_field *field)
 {
-    json_t *number = json_pack("{s:s}", "type", field->whole ? "integer" : "number");
-    put_bounds(number, field);
+    json_t *number = scene_number_schema(field);
     if (field->word == NULL)
         return number;
     return json_pack("{s:[o, {s:s}]}", "oneOf", number, "const", field->word);
@@ -57,8 +66,7 @@ static json_t *vector_schema(const struct scene_field *field)
     json_t *part = number_schema(field);
     if (field->open)
         part = json_pack("{s:[o, {s:s}]}", "oneOf", part, "type", "null");
-    json_t *vector = json_pack("{s:s, s:i, s:i, s:o}", "type", "array", "minItems", 1, "maxItems",
-                               3, "items", part);
+    json_t *vector = scene_axes_schema(part, 0);
     if (!field->scalar)
         return vector;
     return json_pack("{s:[o, o]}", "oneOf", vector, number_schema(field));
@@ -114,52 +122,64 @@ json_t *scene_field_schema(const struct scene_field *field)
     return schema;
 }
 
-/* The group whose first field this is: exactly one or at most one of its keys. */
-static json_t *group_schema(const struct scene_field *table, const struct scene_field *first)
+/* A group of alternatives: exactly one or at most one of its keys. */
+static void add_group(const struct scene_field *table, const char *group, bool required,
+                      void *context)
 {
     json_t *keys = json_array();
-    for (const struct scene_field *before = table; before < first; before++) {
-        if (before->alternative != NULL && strcmp(before->alternative, first->alternative) == 0) {
-            json_decref(keys);
-            return NULL;
-        }
-    }
-    for (const struct scene_field *field = first; field->key != NULL; field++) {
-        if (!field->unsupported && field->alternative != NULL &&
-            strcmp(field->alternative, first->alternative) == 0)
+    for (const struct scene_field *field = table; field->key != NULL; field++) {
+        if (!field->unsupported && scene_field_in_group(field, group))
             (void)json_array_append_new(keys, json_pack("{s:[s]}", "required", field->key));
     }
-    if (!first->required) { /* or none of them */
+    if (!required) { /* or none of them */
         json_t *any = json_deep_copy(keys);
         (void)json_array_append_new(keys, json_pack("{s:{s:o}}", "not", "anyOf", any));
     }
-    return json_pack("{s:o}", "oneOf", keys);
+    (void)json_array_append_new(context, json_pack("{s:o}", "oneOf", keys));
 }
 
 json_t *scene_fields_schema(const struct scene_field *table)
 {
     json_t *properties = json_object(), *required = json_array(), *groups = json_array();
+    json_t *needs = json_object();
     for (const struct scene_field *field = table; field->key != NULL; field++) {
         if (field->unsupported)
             continue;
         put(properties, field->key, scene_field_schema(field));
         if (field->required && field->alternative == NULL)
             (void)json_array_append_new(required, json_string(field->key));
-        if (field->alternative != NULL) {
-            json_t *group = group_schema(table, field);
-            if (group != NULL)
-                (void)json_array_append_new(groups, group);
-        }
+        if (field->needs != NULL)
+            put(needs, field->key, json_pack("[s]", field->needs));
     }
+    scene_groups_visit(table, add_group, groups);
     json_t *schema = json_pack("{s:s, s:b, s:o}", "type", "object", "additionalProperties", 0,
                                "properties", properties);
     if (json_array_size(required) > 0)
         put(schema, "required", json_incref(required));
     if (json_array_size(groups) > 0)
         put(schema, "allOf", json_incref(groups));
+    if (json_object_size(needs) > 0)
+        put(schema, "dependentRequired", json_incref(needs));
     json_decref(required);
     json_decref(groups);
+    json_decref(needs);
     return schema;
+}
+
+void scene_rule_add(json_t *schema, const char *key, const char *word, const char *const *without,
+                    const char *const *with)
+{
+    json_t *properties = json_object(), *required = json_array();
+    for (; *without != NULL; without++)
+        put(properties, *without, json_false());
+    for (; *with != NULL; with++)
+        (void)json_array_append_new(required, json_string(*with));
+    if (json_object_get(schema, "allOf") == NULL)
+        put(schema, "allOf", json_array());
+    (void)json_array_append_new(json_object_get(schema, "allOf"),
+                                json_pack("{s:{s:{s:{s:s}}, s:[s]}, s:{s:o, s:o}}", "if",
+                                          "properties", key, "const", word, "required", key, "then",
+                                          "properties", properties, "required", required));
 }
 
 static json_t *field_describe(const struct scene_field *field)

@@ -42,12 +42,14 @@ static const struct scene_field slope_fields[] = {
      .required = true,
      .default_value = NAN,
      .alternative = "zone",
+     .needs = "about",
      .offset = AT(beyond),
      .meaning = "holds beyond this distance from `about`, perpendicular to up"},
     {.key = "about",
      .kind = SCENE_VECTOR,
      .unit = "m",
      .default_value = NAN,
+     .needs = "beyond",
      .offset = AT(about),
      .meaning = "centre, with beyond"},
     {.key = "angle",
@@ -67,17 +69,11 @@ static void read_slope(struct scene_reader *reader, const struct scene_path *pat
 {
     struct talus_slope *slope = item;
     struct scene_path along = {.parent = path, .key = "along"};
-    struct scene_path about = {.parent = path, .key = "about"};
-    const bool round = json_object_get(given, "beyond") != NULL;
     for (size_t k = 0; k < reader->axis_count; k++)
         slope->along[k] = NAN;
     scene_fields_read(reader, path, slope_fields, given, slope, effective);
     if (!isnan(slope->along[0]))
         (void)scene_direction_normalise(reader, &along, slope->along, effective);
-    if (round && json_object_get(given, "about") == NULL)
-        scene_mistake(reader, &about, "required", NULL, NULL, "'beyond' needs 'about'");
-    else if (!round && json_object_get(given, "about") != NULL)
-        scene_mistake(reader, &about, "contradiction", NULL, NULL, "'about' goes with 'beyond'");
     const double *up = reader->scene->gravity;
     double scale = 0.0, lean = 0.0;
     for (size_t k = 0; k < 3; k++) {
@@ -109,10 +105,11 @@ struct tilted {
     double magnitude, up[3];
 };
 
+static const struct scene_field up_field = {.key = "up", .unit = "1"};
+
 static void read_up(struct scene_reader *reader, const struct scene_path *path, const json_t *given,
                     void *target, json_t *effective)
 {
-    static const struct scene_field up_field = {.key = "up", .unit = "1"};
     struct tilted *tilted = target;
     json_t *value = NULL;
     if (!scene_vector_read(reader, path, &up_field, given, tilted->up, &value))
@@ -126,8 +123,7 @@ static void read_up(struct scene_reader *reader, const struct scene_path *path, 
 
 static json_t *up_schema(void)
 {
-    return json_pack("{s:s, s:i, s:i, s:{s:s}}", "type", "array", "minItems", 1, "maxItems", 3,
-                     "items", "type", "number");
+    return scene_axes_schema(scene_number_schema(&up_field), 0);
 }
 
 /* In this order: slopes are compared with gravity where none holds. */

@@ -63,12 +63,12 @@ static int64_t count_cells(struct scene_reader *reader, const struct scene_path 
     struct scene_path here = {.parent = &max, .index = axis};
     double cells = (keys->max[axis] - keys->min[axis]) / keys->cell[axis];
     if (!(cells > 0.0)) {
-        scene_mistake(reader, &here, "range", NULL, NULL, "max %g must be above min %g",
+        scene_mistake(reader, &here, "order", NULL, NULL, "max %g must be above min %g",
                       keys->max[axis], keys->min[axis]);
         return 0;
     }
     if (!(cells <= SCENE_CELL_MAX)) {
-        scene_mistake(reader, &here, "range", NULL, NULL,
+        scene_mistake(reader, &here, "limit", NULL, NULL,
                       "%.3g cells on this axis; at most %d are allowed", cells, SCENE_CELL_MAX);
         return 0;
     }

@@ -147,7 +147,7 @@ void scene_initial_stress_read(struct scene_reader *reader, const struct scene_p
 
 json_t *scene_initial_stress_schema(void)
 {
-    return json_pack("{s:[{s:[s, s]}, o, {s:s, s:i, s:i, s:{s:s}}]}", "oneOf", "enum", "none",
+    return json_pack("{s:[{s:[s, s]}, o, {s:s, s:i, s:i, s:o}]}", "oneOf", "enum", "none",
                      "hydrostatic", scene_fields_schema(rule_fields), "type", "array", "minItems",
-                     6, "maxItems", 6, "items", "type", "number");
+                     6, "maxItems", 6, "items", scene_number_schema(&stress_field));
 }

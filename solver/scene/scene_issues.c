@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 #include "scene/scene_reader.h"
 
+#include <assert.h>
 #include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -90,6 +91,22 @@ static json_t *copy_small(const json_t *given)
     return json_deep_copy(given);
 }
 
+/* Every code is in the list, so that what it means for the schema is decided in one place. */
+static void set_code(struct scene_issue *issue, const char *code)
+{
+    static const char *const codes[] = {
+#define SCENE_CODE(code, CLASS, text) #code,
+#include "scene/scene_codes.def"
+#undef SCENE_CODE
+    };
+    bool known = false;
+    for (size_t index = 0; index < sizeof codes / sizeof codes[0]; index++)
+        known = known || strcmp(codes[index], code) == 0;
+    assert(known);
+    (void)known;
+    (void)snprintf(issue->code, sizeof issue->code, "%s", code);
+}
+
 void scene_mistake(struct scene_reader *reader, const struct scene_path *path, const char *code,
                    const json_t *given, json_t *allowed, const char *format, ...)
 {
@@ -102,7 +119,7 @@ void scene_mistake(struct scene_reader *reader, const struct scene_path *path, c
     va_start(arguments, format);
     (void)vsnprintf(issue->detail, sizeof issue->detail, format, arguments);
     va_end(arguments);
-    (void)snprintf(issue->code, sizeof issue->code, "%s", code);
+    set_code(issue, code);
     scene_path_print(path, issue->pointer);
     issue->given = copy_small(given);
     issue->allowed = allowed;
@@ -115,7 +132,7 @@ void scene_mistake_at(struct scene_reader *reader, const char *pointer, const ch
     if (issue == NULL)
         return;
     (void)snprintf(issue->detail, sizeof issue->detail, "%s", detail);
-    (void)snprintf(issue->code, sizeof issue->code, "%s", code);
+    set_code(issue, code);
     (void)snprintf(issue->pointer, sizeof issue->pointer, "%s", pointer);
 }
 

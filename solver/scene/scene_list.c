@@ -20,7 +20,7 @@ scene_list_read(struct scene_reader *reader, const struct scene_path *path, cons
         return 0;
     }
     if (count < minimum || count > SCENE_ENTRY_MAX) {
-        scene_mistake(reader, path, "range", NULL, NULL, "expected %zu to %d entries, not %zu",
+        scene_mistake(reader, path, "length", NULL, NULL, "expected %zu to %d entries, not %zu",
                       minimum, SCENE_ENTRY_MAX, count);
         return 0;
     }
@@ -64,7 +64,7 @@ void scene_names_check(struct scene_reader *reader, const struct scene_path *pat
                 continue;
             struct scene_path entry = {.parent = path, .index = index};
             struct scene_path here = {.parent = &entry, .key = "name"};
-            scene_mistake(reader, &here, "duplicate", NULL, NULL,
+            scene_mistake(reader, &here, "taken", NULL, NULL,
                           "the name \"%s\" is taken by entry %zu", names[index], before);
             break;
         }

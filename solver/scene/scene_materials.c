@@ -186,7 +186,7 @@ void scene_materials_read(struct scene_reader *reader, const struct scene_path *
         return;
     }
     if (count < 1 || count > SCENE_MATERIAL_MAX) {
-        scene_mistake(reader, path, "range", NULL, NULL, "expected 1 to %d materials, not %zu",
+        scene_mistake(reader, path, "length", NULL, NULL, "expected 1 to %d materials, not %zu",
                       SCENE_MATERIAL_MAX, count);
         return;
     }
@@ -203,8 +203,8 @@ void scene_materials_read(struct scene_reader *reader, const struct scene_path *
     { /* the iterator does not write */
         struct scene_path here = {.parent = path, .key = name};
         json_t *entry = json_object();
-        if (strlen(name) == 0 || strlen(name) > 48)
-            scene_mistake(reader, &here, "name", NULL, NULL, "a name has 1 to 48 bytes");
+        if (name[0] == '\0' || scene_character_count(name) > 48)
+            scene_mistake(reader, &here, "name", NULL, NULL, "a name has 1 to 48 characters");
         scene_material_read(reader, &here, value, &scene->materials[scene->material_count++],
                             entry);
         scene_put(reader, inner, name, entry);

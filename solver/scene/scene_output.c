@@ -165,7 +165,7 @@ static void finish_every(struct scene_reader *reader, const struct scene_path *p
         scene_put(reader, json_object_get(effective, part), "every", json_real(*every));
     }
     if (*every > 0.0 && duration / *every > limit)
-        scene_mistake(reader, &here, "range", NULL, NULL,
+        scene_mistake(reader, &here, "limit", NULL, NULL,
                       "%.3g intervals in %g s; at most %.0f are allowed", duration / *every,
                       duration, limit);
 }

@@ -10,7 +10,7 @@
 
 struct probe_keys {
     struct talus_probe probe;
-    const char *name, *face, *component;
+    const char *name;
 };
 #define AT(member) offsetof(struct probe_keys, probe.member)
 
@@ -20,6 +20,8 @@ static const char *const kind_words[] = {"front",    "height", "extent",        
 static const char *const measure_words[] = {"particle", "centre_of_mass", NULL};
 static const char *const part_words[] = {"total",      "kinetic",  "strain",    "potential",
                                          "dissipated", "external", "numerical", NULL};
+static const char *const face_words[] = {"x_min", "x_max", "y_min", "y_max",
+                                         "z_min", "z_max", NULL};
 static const char *const quantity_words[] = {"force", "moment", "contact_area", NULL};
 
 /* Keys that go with some kinds only. */
@@ -158,9 +160,11 @@ const struct scene_field scene_probe_fields[] = {
      .offset = AT(field),
      .meaning = "particle field"},
     {.key = "component",
-     .kind = SCENE_TEXT,
+     .kind = SCENE_CHOICE,
      .unit = "1",
-     .offset = offsetof(struct probe_keys, component),
+     .default_value = NAN,
+     .choices = scene_component_names,
+     .offset = SCENE_NOWHERE,
      .meaning = "x, y, z or xx, ...; default all, one series each"},
     {.key = "part",
      .kind = SCENE_CHOICE,
@@ -176,9 +180,11 @@ const struct scene_field scene_probe_fields[] = {
      .schema = word_schema,
      .meaning = "boundary whose reaction is read"},
     {.key = "face",
-     .kind = SCENE_TEXT,
+     .kind = SCENE_CHOICE,
      .unit = "1",
-     .offset = offsetof(struct probe_keys, face),
+     .default_value = NAN,
+     .choices = face_words,
+     .offset = SCENE_NOWHERE,
      .meaning = "one face of a box (x_min, ...); default the whole boundary"},
     {.key = "quantity",
      .kind = SCENE_CHOICE,
@@ -225,7 +231,7 @@ static void finish_along(struct scene_reader *reader, const struct scene_path *p
         return;
     if (isnan(probe->along[0]) && probe->kind == TALUS_PROBE_HEIGHT) {
         if (vertical == TALUS_NO_AXIS) {
-            scene_mistake(reader, &here, "required", NULL, NULL,
+            scene_mistake(reader, &here, "incomplete", NULL, NULL,
                           "without gravity a height needs 'along'");
             return;
         }
@@ -236,25 +242,29 @@ static void finish_along(struct scene_reader *reader, const struct scene_path *p
 }
 
 static void finish_face(struct scene_reader *reader, const struct scene_path *path,
-                        const struct probe_keys *keys, struct talus_probe *probe)
+                        const json_t *given, struct talus_probe *probe)
 {
-    static const char *const words[] = {"x_min", "x_max", "y_min", "y_max", "z_min", "z_max", NULL};
+    const char *face = json_string_value(json_object_get(given, "face"));
     const char *shown[7] = {NULL};
     struct scene_path here = {.parent = path, .key = "face"};
     probe->face_index = -1;
-    if (keys->face == NULL || probe->kind != TALUS_PROBE_REACTION || probe->boundary_index < 0 ||
+    if (face == NULL || probe->kind != TALUS_PROBE_REACTION || probe->boundary_index < 0 ||
         reader->axis_count == 0)
         return;
     const struct talus_boundary *boundary = &reader->scene->boundaries[probe->boundary_index];
-    json_t *given = json_string(keys->face);
     if (boundary->shape != TALUS_BOUNDARY_BOX) {
-        scene_mistake(reader, &here, "contradiction", given, NULL,
+        scene_mistake(reader, &here, "contradiction", NULL, NULL,
                       "only boxes have faces that are read apart");
     } else {
-        memcpy(shown, words, boundary->face_count * sizeof *words);
-        probe->face_index = scene_choice_read(reader, &here, given, shown, NULL);
+        memcpy(shown, face_words, boundary->face_count * sizeof *shown);
+        for (int index = 0; shown[index] != NULL; index++) {
+            if (strcmp(shown[index], face) == 0)
+                probe->face_index = index;
+        }
+        if (probe->face_index < 0)
+            scene_mistake(reader, &here, "dimension", NULL, scene_word_list(shown),
+                          "the box has no face '%s'", face);
     }
-    json_decref(given);
 }
 
 /* Number of components of what the probe reads. */
@@ -268,7 +278,7 @@ static size_t component_count(const struct talus_probe *probe)
 }
 
 static void finish_component(struct scene_reader *reader, const struct scene_path *path,
-                             const struct probe_keys *keys, struct talus_probe *probe)
+                             const json_t *given, struct talus_probe *probe)
 {
     const char *words[10] = {NULL};
     struct scene_path here = {.parent = path, .key = "component"};
@@ -279,11 +289,9 @@ static void finish_component(struct scene_reader *reader, const struct scene_pat
         words[2] = "z";
         probe->component = 2;
     }
-    if (keys->component == NULL)
-        return;
-    json_t *given = json_string(keys->component);
-    probe->component = scene_component_read(reader, &here, given, words);
-    json_decref(given);
+    if (json_object_get(given, "component") != NULL)
+        probe->component =
+            scene_component_read(reader, &here, json_object_get(given, "component"), words);
 }
 
 /* Keys whose default holds for some kinds only. */
@@ -328,12 +336,12 @@ static void read_probe(struct scene_reader *reader, const struct scene_path *pat
     }
     if (reader->issues->count == mistakes) {
         finish_along(reader, path, probe, effective);
-        finish_face(reader, path, &keys, probe);
-        finish_component(reader, path, &keys, probe);
+        finish_face(reader, path, given, probe);
+        finish_component(reader, path, given, probe);
     }
     struct scene_path mean = {.parent = path, .key = "mean_from"};
     if (probe->mean_from >= reader->scene->duration)
-        scene_mistake(reader, &mean, "range", NULL, NULL, "%g s is not before the end at %g s",
+        scene_mistake(reader, &mean, "order", NULL, NULL, "%g s is not before the end at %g s",
                       probe->mean_from, reader->scene->duration);
     probe->name = scene_entry_name(reader, path, keys.name, "probe", effective);
     memcpy(item, probe, sizeof *probe);
@@ -353,7 +361,29 @@ void scene_probes_read(struct scene_reader *reader, const struct scene_path *pat
     scene_names_check(reader, path, names, scene->probe_count);
 }
 
+/* What kind_keys says of one kind. */
+static void add_kind_rule(json_t *entry, size_t kind)
+{
+    const char *without[KIND_KEY_COUNT + 1] = {NULL}, *with[KIND_KEY_COUNT + 1] = {NULL};
+    size_t without_count = 0, with_count = 0;
+    for (size_t index = 0; index < KIND_KEY_COUNT; index++) {
+        const struct kind_key *key = &kind_keys[index];
+        bool applies = false;
+        for (size_t other = 0; other < KIND_KEY_COUNT; other++)
+            applies |= strcmp(kind_keys[other].key, key->key) == 0 &&
+                       (kind_keys[other].kinds & (1u << kind)) != 0;
+        if (!applies)
+            without[without_count++] = key->key;
+        if (key->required && (key->kinds & (1u << kind)) != 0)
+            with[with_count++] = key->key;
+    }
+    scene_rule_add(entry, "kind", kind_words[kind], without, with);
+}
+
 json_t *scene_probes_schema(void)
 {
-    return scene_list_schema(scene_probe_fields, 0);
+    json_t *schema = scene_list_schema(scene_probe_fields, 0);
+    for (size_t kind = 0; kind_words[kind] != NULL; kind++)
+        add_kind_rule(json_object_get(schema, "items"), kind);
+    return schema;
 }

@@ -24,6 +24,16 @@ static void read_dimension(struct scene_reader *reader, const struct scene_path 
     scene_put(reader, effective, path->key, json_string(scene_dimension_words[index]));
 }
 
+json_t *scene_dimensions_of(size_t axis_count)
+{
+    json_t *list = json_array();
+    for (size_t index = 0; scene_dimension_words[index] != NULL; index++) {
+        if (dimension_axes[index] == axis_count)
+            (void)json_array_append_new(list, json_string(scene_dimension_words[index]));
+    }
+    return list;
+}
+
 static json_t *dimension_schema(void)
 {
     return json_pack("{s:o}", "enum", scene_word_list(scene_dimension_words));
@@ -179,6 +189,9 @@ enum talus_status scene_read_file(const char *path, struct talus_scene *scene, j
 {
     json_error_t error;
     json_t *root = json_load_file(path, JSON_REJECT_DUPLICATES, &error);
+    /* 1e20 may be written with all its digits. */
+    if (root == NULL && json_error_code(&error) == json_error_numeric_overflow)
+        root = json_load_file(path, JSON_REJECT_DUPLICATES | JSON_DECODE_INT_AS_REAL, &error);
     if (root != NULL) {
         enum talus_status status = scene_read(root, scene, effective, issues, warnings);
         json_decref(root);

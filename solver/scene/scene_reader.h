@@ -39,6 +39,8 @@ __attribute__((format(printf, 4, 5))) void scene_warn(struct scene_reader *reade
 void scene_mistake_at(struct scene_reader *reader, const char *pointer, const char *code,
                       const char *detail);
 
+/* Characters of UTF-8 text, as JSON Schema counts them. */
+size_t scene_character_count(const char *text);
 /* "object", "array", "string", "number", "boolean", "null" or "nothing" (NULL). */
 const char *scene_type_word(const json_t *value);
 

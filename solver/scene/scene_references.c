@@ -56,7 +56,7 @@ static void read_curve(struct scene_reader *reader, const struct scene_path *pat
     if (given == NULL)
         return;
     if (count < 2 || count > SCENE_CURVE_MAX) {
-        scene_mistake(reader, path, json_is_array(given) ? "range" : "type", NULL, NULL,
+        scene_mistake(reader, path, json_is_array(given) ? "length" : "type", NULL, NULL,
                       "expected an array of 2 to %d pairs [time, value]", SCENE_CURVE_MAX);
         return;
     }
@@ -73,7 +73,7 @@ static void read_curve(struct scene_reader *reader, const struct scene_path *pat
         if (!read_point(reader, &here, json_array_get(given, index), point))
             continue;
         if (index > 0 && point[0] <= reference->time[index - 1])
-            scene_mistake(reader, &here, "range", NULL, NULL, "times must grow: %g after %g",
+            scene_mistake(reader, &here, "order", NULL, NULL, "times must grow: %g after %g",
                           point[0], reference->time[index - 1]);
         reference->time[index] = point[0];
         reference->value[index] = point[1];
@@ -86,9 +86,9 @@ static void read_curve(struct scene_reader *reader, const struct scene_path *pat
 
 static json_t *curve_schema(void)
 {
-    return json_pack("{s:s, s:i, s:i, s:{s:s, s:i, s:i, s:{s:s}}}", "type", "array", "minItems", 2,
+    return json_pack("{s:s, s:i, s:i, s:{s:s, s:i, s:i, s:o}}", "type", "array", "minItems", 2,
                      "maxItems", (int)SCENE_CURVE_MAX, "items", "type", "array", "minItems", 2,
-                     "maxItems", 2, "items", "type", "number");
+                     "maxItems", 2, "items", scene_number_schema(&point_field));
 }
 
 const struct scene_field scene_reference_fields[] = {
@@ -132,6 +132,7 @@ const struct scene_field scene_reference_fields[] = {
      .unit = "s",
      .maximum = INFINITY,
      .default_value = NAN,
+     .needs = "value",
      .offset = offsetof(struct reference_keys, at),
      .meaning = "time of a single value"},
     {.key = NULL},
@@ -142,13 +143,10 @@ static void finish_value(struct scene_reader *reader, const struct scene_path *p
                          const struct reference_keys *keys, struct talus_reference *reference)
 {
     struct scene_path at = {.parent = path, .key = "at"};
-    if (isnan(keys->value)) {
-        if (!isnan(keys->at))
-            scene_mistake(reader, &at, "contradiction", NULL, NULL, "'at' goes with 'value'");
+    if (isnan(keys->value))
         return;
-    }
     if (keys->at > reader->scene->duration)
-        scene_mistake(reader, &at, "range", NULL, NULL, "%g s is after the end at %g s", keys->at,
+        scene_mistake(reader, &at, "order", NULL, NULL, "%g s is after the end at %g s", keys->at,
                       reader->scene->duration);
     if (reference->time != NULL)
         return; /* both were given, which is a mistake already */

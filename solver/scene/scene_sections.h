@@ -23,6 +23,9 @@ extern const struct scene_field scene_probe_fields[];
 extern const struct scene_field scene_reference_fields[];
 extern const struct scene_field scene_output_fields[];
 
+/* The dimensions with so many axes; new array. */
+json_t *scene_dimensions_of(size_t axis_count);
+
 /* Readers for the custom fields of the root; target is the scene. */
 #define SCENE_SECTION(name)                                                                        \
     void scene_##name##_read(struct scene_reader *reader, const struct scene_path *path,           \

@@ -5,6 +5,14 @@
 #include <stdlib.h>
 #include <string.h>
 
+size_t scene_character_count(const char *text)
+{
+    size_t count = 0;
+    for (; *text != '\0'; text++)
+        count += ((unsigned char)*text & 0xc0) != 0x80; /* the first byte of each in UTF-8 */
+    return count;
+}
+
 const char *scene_type_word(const json_t *value)
 {
     if (value == NULL)

@@ -8,11 +8,12 @@
 
 enum { POINT_MAX = 100000 };
 
+static const struct scene_field time_field = {.key = "t", .unit = "s"};
+
 static bool read_point(struct scene_reader *reader, const struct scene_path *path,
                        const struct scene_field *field, const json_t *given,
                        struct talus_time_table *table)
 {
-    static const struct scene_field time_field = {.key = "t", .unit = "s"};
     struct scene_path time_path = {.parent = path, .index = 0};
     struct scene_path value_path = {.parent = path, .index = 1};
     double *time = &table->time[table->count], *value = &table->value[table->count];
@@ -25,7 +26,7 @@ static bool read_point(struct scene_reader *reader, const struct scene_path *pat
     if (!scene_number_read(reader, &value_path, field, json_array_get(given, 1), value) || !valid)
         return false;
     if (table->count > 0 && *time <= time[-1]) {
-        scene_mistake(reader, &time_path, "range", json_array_get(given, 0), NULL,
+        scene_mistake(reader, &time_path, "order", json_array_get(given, 0), NULL,
                       "the times of a table grow: %g s is not after %g s", *time, time[-1]);
         return false;
     }
@@ -65,10 +66,11 @@ static bool read_table(struct scene_reader *reader, const struct scene_path *pat
                        const struct scene_field *field, const json_t *given,
                        struct talus_time_table *table)
 {
-    bool valid = open_table(reader, path, json_array_size(given), table);
-    for (size_t index = 0; valid && index < json_array_size(given); index++) {
+    const bool open = open_table(reader, path, json_array_size(given), table);
+    bool valid = open;
+    for (size_t index = 0; open && index < json_array_size(given); index++) {
         struct scene_path here = {.parent = path, .index = index};
-        valid = read_point(reader, &here, field, json_array_get(given, index), table);
+        valid = read_point(reader, &here, field, json_array_get(given, index), table) && valid;
     }
     if (!valid)
         time_table_release(table, 1);
@@ -100,12 +102,14 @@ bool scene_timed_vector_read(struct scene_reader *reader, const struct scene_pat
     json_t *parts = json_array();
     bool valid = scene_vector_length_check(reader, path, field, given);
     memset(tables, 0, 3 * sizeof *tables);
-    for (size_t k = 0; valid && k < json_array_size(given); k++) {
+    const size_t count = valid ? json_array_size(given) : 0;
+    for (size_t k = 0; k < count; k++) {
         struct scene_path here = {.parent = path, .index = k};
         json_t *part = NULL;
-        valid = scene_timed_number_read(reader, &here, field, json_array_get(given, k), &value[k],
-                                        &tables[k], &part);
-        if (valid && json_array_append_new(parts, part) != 0)
+        if (!scene_timed_number_read(reader, &here, field, json_array_get(given, k), &value[k],
+                                     &tables[k], &part))
+            valid = false;
+        else if (json_array_append_new(parts, part) != 0)
             reader->out_of_memory = true;
     }
     if (valid) {
@@ -121,8 +125,9 @@ json_t *scene_timed_number_schema(const struct scene_field *field)
 {
     struct scene_field number = *field;
     number.kind = SCENE_NUMBER;
-    json_t *point = json_pack("{s:s, s:i, s:i, s:{s:s}}", "type", "array", "minItems", 2,
-                              "maxItems", 2, "items", "type", "number");
+    json_t *point =
+        json_pack("{s:s, s:i, s:i, s:[o, o]}", "type", "array", "minItems", 2, "maxItems", 2,
+                  "prefixItems", scene_number_schema(&time_field), scene_number_schema(field));
     return json_pack("{s:[o, {s:s, s:i, s:i, s:o}], s:s}", "oneOf", scene_field_schema(&number),
                      "type", "array", "minItems", 1, "maxItems", (int)POINT_MAX, "items", point,
                      "description", "a number, or a table [[t, value], ...] over time");
@@ -130,7 +135,8 @@ json_t *scene_timed_number_schema(const struct scene_field *field)
 
 json_t *scene_timed_vector_schema(const struct scene_field *field)
 {
-    return json_pack("{s:s, s:i, s:i, s:o, s:s}", "type", "array", "minItems", 1, "maxItems", 3,
-                     "items", scene_timed_number_schema(field), "description",
-                     field->meaning != NULL ? field->meaning : "");
+    json_t *schema = scene_axes_schema(scene_timed_number_schema(field), 0);
+    (void)json_object_set_new(schema, "description",
+                              json_string(field->meaning != NULL ? field->meaning : ""));
+    return schema;
 }

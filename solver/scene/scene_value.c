@@ -8,17 +8,18 @@
 /* No quantity of a scene is larger: sums and products of a few stay finite. */
 static const double largest = 1e30;
 
-static void bounds_of(const struct scene_field *field, double *minimum, double *maximum)
+void scene_bounds_read(const struct scene_field *field, double *minimum, double *maximum)
 {
     bool open = field->minimum == 0.0 && field->maximum == 0.0;
-    *minimum = open ? -largest : fmax(field->minimum, -largest);
+    bool positive = open && field->above_minimum;
+    *minimum = positive ? 0.0 : (open ? -largest : fmax(field->minimum, -largest));
     *maximum = open ? largest : fmin(field->maximum, largest);
 }
 
 static bool in_bounds(const struct scene_field *field, double value)
 {
     double minimum, maximum;
-    bounds_of(field, &minimum, &maximum);
+    scene_bounds_read(field, &minimum, &maximum);
     bool low = field->above_minimum ? value > minimum : value >= minimum;
     bool high = field->below_maximum ? value < maximum : value <= maximum;
     return low && high;
@@ -27,7 +28,7 @@ static bool in_bounds(const struct scene_field *field, double value)
 static json_t *allowed_range(const struct scene_field *field)
 {
     double minimum, maximum;
-    bounds_of(field, &minimum, &maximum);
+    scene_bounds_read(field, &minimum, &maximum);
     return json_pack("{s:f, s:f}", field->above_minimum ? "above" : "minimum", minimum,
                      field->below_maximum ? "below" : "maximum", maximum);
 }
@@ -35,7 +36,7 @@ static json_t *allowed_range(const struct scene_field *field)
 static void print_range(const struct scene_field *field, char text[96])
 {
     double minimum, maximum;
-    bounds_of(field, &minimum, &maximum);
+    scene_bounds_read(field, &minimum, &maximum);
     const char *low = field->above_minimum ? "above" : "at least";
     const char *high = field->below_maximum ? "below" : "at most";
     if (maximum >= largest)

@@ -45,7 +45,7 @@ static enum talus_status count_kept(const struct talus_scene *scene, size_t *cou
         seeding_lattice_init(&lattice, scene, &scene->bodies[index]);
         total += seeding_lattice_point_count(&lattice);
         if (total > SEEDING_PARTICLE_MAX)
-            return talus_error_set(error, TALUS_INVALID, "range", "/bodies",
+            return talus_error_set(error, TALUS_INVALID, "limit", "/bodies",
                                    "the bodies ask for about %.3g particles; %d are allowed", total,
                                    SEEDING_PARTICLE_MAX);
         *count += (size_t)seeding_lattice_kept(&lattice);

@@ -106,7 +106,7 @@ static enum talus_status check_inside_grid(const struct talus_scene *scene, size
         char pointer[64];
         (void)snprintf(pointer, sizeof pointer, "/bodies/%zu", body_index);
         return talus_error_set(
-            error, TALUS_INVALID, "range", pointer,
+            error, TALUS_INVALID, "outside", pointer,
             "body '%s' reaches from %g to %g m on the %c axis, but the grid from %g to %g m",
             shape->body->name, low[k], high[k], "xyz"[k], grid -> min[k], end);
     }
@@ -193,7 +193,7 @@ static enum talus_status check_lattice(const struct talus_scene *scene, size_t b
     seeding_lattice_init(&lattice, scene, body);
     double points = seeding_lattice_point_count(&lattice);
     if (!(points <= SEEDING_PARTICLE_MAX))
-        return talus_error_set(error, TALUS_INVALID, "range", pointer,
+        return talus_error_set(error, TALUS_INVALID, "limit", pointer,
                                "body '%s' asks for about %.3g particles; %d are allowed",
                                body->name, points, SEEDING_PARTICLE_MAX);
     if (!seeding_lattice_selects(&lattice) ||

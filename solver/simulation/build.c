@@ -274,7 +274,7 @@ enum talus_status run_build(struct run *run, const struct talus_scene *scene,
     if (scene->dimension == TALUS_AXISYMMETRIC && scene_add_axis(&run->scene) != 0)
         return talus_error_set(error, TALUS_MEMORY, "memory", "", "out of memory");
     if (scene->material_count > 64)
-        return talus_error_set(error, TALUS_INVALID, "range", "/materials",
+        return talus_error_set(error, TALUS_INVALID, "length", "/materials",
                                "%zu materials; at most 64 are possible", scene->material_count);
     if (scene_check_dimension(scene, error) != TALUS_OK || method_check(scene, error) != TALUS_OK)
         return error->status;

@@ -38,7 +38,7 @@ static enum talus_status check_revolution(const struct talus_scene *scene,
                                           struct talus_error *error)
 {
     if (scene->grid.min[0] < 0)
-        return talus_error_set(error, TALUS_INVALID, "range", "/grid/min/0",
+        return talus_error_set(error, TALUS_INVALID, "dimension", "/grid/min/0",
                                "x is the distance from the axis in an axisymmetric scene: the grid "
                                "cannot begin at %g m",
                                scene->grid.min[0]);

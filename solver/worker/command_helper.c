@@ -154,6 +154,9 @@ static json_t *answer_question(const char *line, size_t length)
 {
     json_error_t error;
     json_t *question = json_loadb(line, length, JSON_REJECT_DUPLICATES, &error);
+    if (question == NULL && json_error_code(&error) == json_error_numeric_overflow)
+        question =
+            json_loadb(line, length, JSON_REJECT_DUPLICATES | JSON_DECODE_INT_AS_REAL, &error);
     const char *name = json_string_value(json_object_get(question, "op"));
     json_t *answer = NULL;
     if (question == NULL)

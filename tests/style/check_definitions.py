@@ -38,6 +38,7 @@ DATA_LISTS = {
     "solver/materials/hardening_parameters.def",
     "solver/materials/softening_parameters.def",
     "solver/materials/mobilised_parameters.def",
+    "solver/scene/scene_codes.def",
     "solver/state/particle_fields.def",
     "tests/benchmark/operation_counts.def",
 }

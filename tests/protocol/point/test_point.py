@@ -101,7 +101,7 @@ class Mistakes(unittest.TestCase):
         self.refuse(changed(strain="large"), ("/strain", "unknown_value"))
         self.refuse(changed(initial_stress=[0, 0]), ("/initial_stress", "length"))
         self.refuse(changed(initial_stress=[0, 0, 0, 0, 0, "a"]), ("/initial_stress/5", "type"))
-        self.refuse(changed(path=[]), ("/path", "range"))
+        self.refuse(changed(path=[]), ("/path", "length"))
         self.refuse([], ("", "type"))
 
     def test_path(self):
@@ -130,9 +130,9 @@ class Mistakes(unittest.TestCase):
         cap = {"model": "drucker_prager_cap", "density": 2000, "young_modulus": 1e6,
                "poisson_ratio": 0.3, "friction_angle": 20, "cone_strength": 10}
         self.refuse(changed(material=dict(cap, cohesion=1)),
-                    ("/material/cone_strength", "contradiction"))
+                    ("/material/cone_strength", "alternative"))
         self.refuse(changed(material=dict(cap, dilation_angle=25)),
-                    ("/material/dilation_angle", "range"))
+                    ("/material/dilation_angle", "limit"))
         nakai = {"model": "matsuoka_nakai", "density": 2000, "young_modulus": 1e6,
                  "poisson_ratio": 0.3, "friction": {"a0": 30, "a5": 1}}
         self.refuse(changed(material=dict(nakai, potential="mohr_coulomb")),
@@ -140,9 +140,9 @@ class Mistakes(unittest.TestCase):
         cone = {"model": "drucker_prager", "density": 2000, "young_modulus": 1e6,
                 "poisson_ratio": 0.3, "friction_angle": 20}
         self.refuse(changed(material=dict(cone, cone_slope=0.2)),
-                    ("/material/cone_slope", "contradiction"))
+                    ("/material/cone_slope", "alternative"))
         self.refuse(changed(material=dict(cone, dilation_angle=25)),
-                    ("/material/dilation_angle", "range"))
+                    ("/material/dilation_angle", "limit"))
         self.refuse(changed(material=dict(cone, isotropic_hardening=-1)),
                     ("/material/isotropic_hardening", "range"))
         self.refuse(changed(material=dict(nakai, dilation_angle=3)),

@@ -61,6 +61,13 @@ KEYWORDS = {
     "maximum": lambda value, bound, _: not is_number(value) or value <= bound,
     "exclusiveMinimum": lambda value, bound, _: not is_number(value) or value > bound,
     "exclusiveMaximum": lambda value, bound, _: not is_number(value) or value < bound,
+    "prefixItems": lambda value, parts, _: not isinstance(value, list) or all(
+        accepts(part, entry) for part, entry in zip(parts, value)),
+    "dependentRequired": lambda value, needs, _: not isinstance(value, dict) or all(
+        other in value for key, others in needs.items() if key in value for other in others),
+    "if": lambda value, part, schema: accepts(
+        schema.get("then" if accepts(part, value) else "else", True), value),
+    "then": lambda *_: True,
     "description": lambda *_: True,
     "default": lambda *_: True,
     "title": lambda *_: True,
@@ -70,4 +77,6 @@ KEYWORDS = {
 
 def accepts(schema, value):
     """True if the schema accepts the value. KeyError for a keyword that is not known here."""
+    if isinstance(schema, bool):
+        return schema
     return all(KEYWORDS[key](value, argument, schema) for key, argument in schema.items())

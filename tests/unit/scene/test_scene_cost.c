@@ -123,7 +123,7 @@ static void monstrous_scenes_are_refused_at_once(void **state)
                        index == 0 ? "[1e-4, 1e-4, 1e-4]" : "[1e-25, 1e-25, 1e-25]");
         fixture_read(scene, &result);
         assert_int_equal(result.status, TALUS_INVALID);
-        assert_non_null(fixture_find(&result.issues, "/bodies/0", "range"));
+        assert_non_null(fixture_find(&result.issues, "/bodies/0", "limit"));
         fixture_result_release(&result);
         json_decref(scene);
     }
