@@ -4,6 +4,7 @@
 #include "request.h"
 #include "service.h"
 #include "studies/study_request.h"
+#include "studies/study_units.h"
 #include "studies/study_view.h"
 
 #include <string.h>
@@ -19,8 +20,9 @@ static json_t *chart_of(const struct study *study)
     json_t *design = json_loads(study->design, 0, NULL);
     const json_t *own = json_object_get(design, "work_precision");
     json_t *names = json_loads(study->names, 0, NULL);
+    const char *cost = json_string_value(json_object_get(own, "cost"));
     json_t *chart =
-        json_pack("{s:O, s:O, s:O, s:b}", "x", json_object_get(own, "cost"), "y",
+        json_pack("{s:s, s:O, s:O, s:b}", "x", cost == NULL ? "wall_seconds" : cost, "y",
                   json_object_get(own, "error"), "series", json_array_get(names, 0), "log", 1);
     json_decref(names);
     json_decref(design);
@@ -37,9 +39,10 @@ static json_t *question_make(struct service *service, const struct study *study,
         text.data != NULL && !text.failed)
         table = json_loadb(text.data, text.length, 0, NULL);
     if (table != NULL)
-        question = json_pack("{s:s, s:O, s:O, s:s, s:s}", "op", "chart", "rows",
+        question = json_pack("{s:s, s:O, s:O, s:s, s:s, s:o}", "op", "chart", "rows",
                              json_object_get(table, "rows"), "chart", chart, "kind",
-                             study_kind_name((enum study_kind)study->kind), "title", study->name);
+                             study_kind_name((enum study_kind)study->kind), "title", study->name,
+                             "units", study_units(service, json_object_get(table, "rows")));
     if (question == NULL && error->status == TALUS_OK)
         (void)talus_error_set(error, TALUS_MEMORY, "memory", "", "out of memory");
     json_decref(table);

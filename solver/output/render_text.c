@@ -27,7 +27,7 @@ void render_text(cairo_t *context, double x, double y, double share_x, double sh
 
 struct unit_prefix render_prefix_find(const char *unit, double size)
 {
-    static const char *const plain[] = {"Pa", "N", "J"};
+    static const char *const plain[] = {"Pa", "N", "J", "N/m", "J/m"};
     for (size_t index = 0; index < sizeof plain / sizeof plain[0]; index++) {
         if (strcmp(unit, plain[index]) != 0 || size < 2e3)
             continue;

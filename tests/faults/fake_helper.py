@@ -71,7 +71,7 @@ def chart(question):
     """Says what it was asked to draw."""
     if not question["rows"][0]["metrics"]:
         return refuse("/rows", "required", "no metrics")
-    shown = json.dumps({key: question[key] for key in ("chart", "kind", "title")}, sort_keys=True)
+    shown = json.dumps({key: question[key] for key in ("chart", "kind", "title", "units")}, sort_keys=True)
     return {"ok": True, "svg": f"<svg xmlns='http://www.w3.org/2000/svg'><!-- {shown} "
                                f"{len(question['rows'])} rows --></svg>"}
 

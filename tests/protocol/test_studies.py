@@ -108,6 +108,17 @@ class Designs(StudyTest):
         self.assertEqual({tuple(row["parameters"].values()) for row in rows},
                          {(v, r) for v in "ab" for r in ("coarse", "fine")})
         self.assertEqual(study["kind"], "work_precision")
+        self.assert_own_chart(study, b'"x": "particle_steps"')
+        del design["work_precision"]["cost"]  # wall_seconds, of the same runs
+        study, _ = self.run_study(body)
+        self.assert_own_chart(study, b'"x": "wall_seconds"')
+
+    def assert_own_chart(self, study, axis):
+        """A comparison of work and precision has a chart without asking for one."""
+        reply = self.client.get(f"/v1/studies/{study['id']}/chart.svg")
+        self.assertEqual(reply.status, 200, reply)
+        self.assertIn(axis, reply.body)
+        self.assertIn(b'"y": "error.runout"', reply.body)
 
     def bisection(self, **changes):
         return {"bisect": dict({"parameter": "/duration", "low": 1, "high": 9, "tolerance": 0.25,
@@ -187,6 +198,8 @@ class Life(StudyTest):
         self.assertEqual(reply.status, 200, reply)
         self.assertEqual(reply.headers["content-type"], "image/svg+xml")
         self.assertIn(b'"x": "duration"', reply.body)
+        self.assertIn(b'"probe.runout.max": "m"', reply.body)
+        self.assertNotIn(b'"probe.runout.time_of_max":', reply.body)
         self.assertIn(b"6 rows", reply.body)
         self.assertEqual(study["chart"], chart)
         plain, _ = self.run_study(study_body(GRID))
