@@ -78,16 +78,22 @@ static void add_rate(struct step_rate *sum, size_t axes, const char *kind, const
     sum->cell += share * rate->cell[axes - 1];
 }
 
-/* Every material by its share of the particles. */
-static void add_materials(struct step_rate *sum, const struct talus_scene *scene, double particles)
+/* Every material by its share of the particles, of as many bodies as count. */
+static void add_materials(struct step_rate *sum, const struct talus_scene *scene)
 {
-    for (size_t index = 0; index < scene->body_count; index++) {
+    enum { COUNTED_MAX = 100 };
+    double particles[COUNTED_MAX], all = 0.0;
+    for (size_t index = 0; index < scene->body_count && index < COUNTED_MAX; index++) {
         struct seeding_report report;
+        seeding_report(scene, index, &report);
+        particles[index] = fmax((double)report.particle_count, 1.0);
+        all += particles[index];
+    }
+    for (size_t index = 0; index < scene->body_count && index < COUNTED_MAX; index++) {
         const struct talus_material *material =
             &scene->materials[scene->bodies[index].material_index];
-        seeding_report(scene, index, &report);
         add_rate(sum, scene->axis_count, "MATERIAL", material_table[material->model_index]->name,
-                 (double)report.particle_count / fmax(particles, 1.0));
+                 particles[index] / all);
     }
 }
 
@@ -100,7 +106,7 @@ static double isa_factor(void)
     return isa_unknown;
 }
 
-static struct step_rate step_rate_make(const struct talus_scene *scene, double particles)
+static struct step_rate step_rate_make(const struct talus_scene *scene)
 {
     const struct talus_solver_options *solver = &scene->solver;
     const size_t axes = scene->axis_count;
@@ -113,7 +119,7 @@ static struct step_rate step_rate_make(const struct talus_scene *scene, double p
     add_rate(&rate, axes, "SHAPE", shape_table[solver->shape_index]->name, 1.0);
     add_rate(&rate, axes, "TRANSFER", transfer_of(solver)->name, 1.0);
     add_rate(&rate, axes, "ANTI_LOCKING", fit, 1.0);
-    add_materials(&rate, scene, particles);
+    add_materials(&rate, scene);
     double factor =
         isa_factor() / (solver->precision == TALUS_PRECISION_SINGLE ? single_gain : 1.0);
     rate.particle *= factor;
@@ -126,7 +132,7 @@ struct scene_cost scene_cost_make(const struct talus_scene *scene,
                                   const struct scene_output_size *output, int threads)
 {
     const double particles = (double)estimate->particle_count;
-    const struct step_rate rate = step_rate_make(scene, particles);
+    const struct step_rate rate = step_rate_make(scene);
     const double number_bytes = scene->output.frame_double ? 8.0 : 4.0;
     const double frame = file_seconds * (scene->output.grid_fields != 0 ? 2.0 : 1.0) +
                          byte_seconds * particles * output->frame_numbers * number_bytes;
