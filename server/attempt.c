@@ -19,6 +19,7 @@ struct attempt *attempt_create(const struct job *job, const char *folder, const 
         return NULL;
     attempt->id = strdup(job->id);
     attempt->folder = strdup(folder);
+    attempt->owner = strdup(job->owner == NULL ? "" : job->owner);
     attempt->number = job->attempt;
     attempt->threads = job->threads;
     /* Read once: a step of the machine's clock during the run must not end it. */
@@ -28,7 +29,7 @@ struct attempt *attempt_create(const struct job *job, const char *folder, const 
     attempt->tail.descriptor = -1;
     attempt->end = -1;
     (void)attempt_update(attempt, job);
-    if (attempt->id != NULL && attempt->folder != NULL)
+    if (attempt->id != NULL && attempt->folder != NULL && attempt->owner != NULL)
         return attempt;
     attempt_destroy(attempt);
     return NULL;
@@ -42,6 +43,7 @@ void attempt_destroy(struct attempt *attempt)
     json_decref(attempt->progress);
     json_decref(attempt->last);
     free(attempt->orders);
+    free(attempt->owner);
     free(attempt->id);
     free(attempt->folder);
     free(attempt);

@@ -12,7 +12,7 @@
 
 /* Owns texts, JSON and the tail. */
 struct attempt {
-    char *id, *folder;
+    char *id, *folder, *owner;
     int64_t number, threads, memory_limit, disk_limit;
     double wall_begin;    /* when the job would have begun without pauses (monotonic) */
     double wall_deadline; /* when limits.wall_seconds is used up (monotonic), 0: never */

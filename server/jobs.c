@@ -107,7 +107,11 @@ enum talus_status jobs_create(struct service *service, struct job *job, const js
         return status;
     job->revision = 1;
     /* Rows of a study become jobs only as places get free. */
-    int64_t queue_limit = job->study != NULL ? 0 : (int64_t)service->config->queue_limit;
+    const struct store_limits limits = {
+        .queued = (int64_t)service->config->queue_limit,
+        .owner_queued = (int64_t)service->config->quota_queued,
+        .owner_disk = service->config->quota_disk_bytes,
+    };
     char *folder = jobs_folder(service, id);
     if (folder == NULL)
         return out_of_memory(error);
@@ -115,7 +119,8 @@ enum talus_status jobs_create(struct service *service, struct job *job, const js
     if (status == TALUS_OK)
         status = jobs_folder_sync(service, error);
     if (status == TALUS_OK)
-        status = store_job_insert(service->store, job, key, queue_limit, result, existing, error);
+        status = store_job_insert(service->store, job, key, job->study != NULL ? NULL : &limits,
+                                  result, existing, error);
     if (status != TALUS_OK || *result != STORE_INSERTED)
         folder_discard(folder);
     else

@@ -25,6 +25,15 @@ enum store_insert {
     STORE_REPLAYED,   /* the key is known with this body: `existing` is its resource */
     STORE_OTHER_BODY, /* the key is known with another body */
     STORE_QUEUE_FULL,
+    STORE_QUOTA_QUEUED, /* the owner has as many queued jobs as allowed */
+    STORE_QUOTA_DISK,   /* the owner's jobs take as much disk as allowed, by their forecasts */
+};
+
+/* What bounds an insertion; 0: no bound. */
+struct store_limits {
+    int64_t queued;       /* of all */
+    int64_t owner_queued; /* of the job's owner */
+    double owner_disk;    /* [bytes] of all jobs of the owner, this one included */
 };
 
 struct store_label {
@@ -71,12 +80,13 @@ uint64_t store_commit_count(const struct store *store);
 /* Whether commits work. */
 bool store_healthy(struct store *store);
 
-/* Inserts a new job, with its key if there is one, in one transaction. `queue_limit` bounds the
- * queued jobs (0: no bound). */
+/* Inserts a new job, with its key if there is one, in one transaction. *limits
+ * (NULL: none) are not exceeded. */
 TALUS_MUST_CHECK enum talus_status store_job_insert(struct store *store, const struct job *job,
                                                     const struct store_key *key,
-                                                    int64_t queue_limit, enum store_insert *result,
-                                                    char existing[64], struct talus_error *error);
+                                                    const struct store_limits *limits,
+                                                    enum store_insert *result, char existing[64],
+                                                    struct talus_error *error);
 /* Looks a key up without inserting: STORE_INSERTED stands for an unknown key. */
 TALUS_MUST_CHECK enum talus_status store_key_find(struct store *store, const struct store_key *key,
                                                   enum store_insert *result, char existing[64],
@@ -100,6 +110,16 @@ TALUS_MUST_CHECK enum talus_status
 store_job_list(struct store *store, const struct store_filter *filter,
                bool (*visit)(const struct job *job, void *context), void *context,
                struct talus_error *error);
+/* What the scheduler wants to know of a queued job; texts are borrowed. */
+struct store_queued {
+    const char *id, *owner;
+    int64_t threads, priority;
+};
+
+/* Visits the first few queued jobs of every owner. */
+TALUS_MUST_CHECK enum talus_status
+store_queue_heads(struct store *store, void (*visit)(const struct store_queued *job, void *context),
+                  void *context, struct talus_error *error);
 /* How many jobs there are in each state. */
 TALUS_MUST_CHECK enum talus_status
 store_job_counts(struct store *store, int64_t counts[JOB_STATE_COUNT], struct talus_error *error);

@@ -106,24 +106,61 @@ enum talus_status store_keys_remove(sqlite3 *database, const char *resource,
 struct insert_context {
     const struct job *job;
     const struct store_key *key;
-    int64_t queue_limit;
+    struct store_limits limits;
     enum store_insert result;
     char existing[64];
 };
 
-static enum talus_status queue_check(sqlite3 *database, struct insert_context *insert,
-                                     struct talus_error *error)
+/* Whether a figure of the queue stays below a bound; if not, the result says so. The figure is what
+ * a statement with state and owner as parameters yields. */
+static enum talus_status limit_check(sqlite3 *database, struct insert_context *insert,
+                                     const char *sql, double more, double bound,
+                                     enum store_insert result, struct talus_error *error)
 {
-    sqlite3_stmt *statement =
-        store_prepare(database, "SELECT count(*) FROM jobs WHERE state = ?", error);
+    if (bound <= 0 || insert->result != STORE_INSERTED)
+        return TALUS_OK;
+    sqlite3_stmt *statement = store_prepare(database, sql, error);
     if (statement == NULL)
         return TALUS_IO;
-    (void)sqlite3_bind_int(statement, 1, JOB_QUEUED);
+    int owner = sqlite3_bind_parameter_index(statement, ":owner");
+    if (owner > 0)
+        (void)sqlite3_bind_text(statement, owner,
+                                insert->job->owner == NULL ? "" : insert->job->owner, -1,
+                                SQLITE_STATIC);
     bool found = sqlite3_step(statement) == SQLITE_ROW;
-    if (found && sqlite3_column_int64(statement, 0) >= insert->queue_limit)
-        insert->result = STORE_QUEUE_FULL;
+    if (found && sqlite3_column_double(statement, 0) + more > bound)
+        insert->result = result;
     store_release(statement);
     return found ? TALUS_OK : store_failure(database, error);
+}
+
+static double forecast_disk(const struct job *job)
+{
+    json_t *forecast = json_loads(job->forecast == NULL ? "{}" : job->forecast, 0, NULL);
+    double bytes = json_number_value(json_object_get(forecast, "disk_bytes"));
+    json_decref(forecast);
+    return bytes;
+}
+
+static enum talus_status limits_check(sqlite3 *database, struct insert_context *insert,
+                                      struct talus_error *error)
+{
+    const struct store_limits *limits = &insert->limits;
+    _Static_assert(JOB_QUEUED == 0 && JOB_STATE_COUNT == 5, "the numbers are in the statements");
+    enum talus_status status =
+        limit_check(database, insert, "SELECT count(*) FROM jobs WHERE state = 0", 1,
+                    (double)limits->queued, STORE_QUEUE_FULL, error);
+    if (status == TALUS_OK)
+        status = limit_check(database, insert,
+                             "SELECT count(*) FROM jobs WHERE state = 0 AND owner = :owner", 1,
+                             (double)limits->owner_queued, STORE_QUOTA_QUEUED, error);
+    if (status == TALUS_OK && limits->owner_disk > 0)
+        status =
+            limit_check(database, insert,
+                        "SELECT coalesce(sum(json_extract(forecast, '$.disk_bytes')), 0)"
+                        " FROM jobs WHERE state IN (0, 1, 2, 3, 4) AND owner = :owner",
+                        forecast_disk(insert->job), limits->owner_disk, STORE_QUOTA_DISK, error);
+    return status;
 }
 
 enum talus_status store_key_write(sqlite3 *database, const struct store_key *key,
@@ -148,8 +185,8 @@ static enum talus_status insert_apply(sqlite3 *database, void *context, struct t
     insert->result = STORE_INSERTED;
     if (insert->key != NULL)
         status = store_key_look(database, insert->key, &insert->result, insert->existing, error);
-    if (status == TALUS_OK && insert->result == STORE_INSERTED && insert->queue_limit > 0)
-        status = queue_check(database, insert, error);
+    if (status == TALUS_OK && insert->result == STORE_INSERTED)
+        status = limits_check(database, insert, error);
     if (status != TALUS_OK || insert->result != STORE_INSERTED)
         return status;
     status = study_row_enter(database, insert->job, error);
@@ -163,11 +200,14 @@ static enum talus_status insert_apply(sqlite3 *database, void *context, struct t
 }
 
 enum talus_status store_job_insert(struct store *store, const struct job *job,
-                                   const struct store_key *key, int64_t queue_limit,
+                                   const struct store_key *key, const struct store_limits *limits,
                                    enum store_insert *result, char existing[64],
                                    struct talus_error *error)
 {
-    struct insert_context insert = {.job = job, .key = key, .queue_limit = queue_limit};
+    struct insert_context insert = {.job = job,
+                                    .key = key,
+                                    .limits = limits == NULL ? (struct store_limits){.queued = 0}
+                                                             : *limits};
     enum talus_status status = store_write(store, insert_apply, &insert, error);
     memcpy(existing, insert.existing, sizeof insert.existing);
     *result = insert.result;

@@ -109,6 +109,38 @@ enum talus_status store_job_list(struct store *store, const struct store_filter 
     return status;
 }
 
+enum talus_status store_queue_heads(struct store *store,
+                                    void (*visit)(const struct store_queued *job, void *context),
+                                    void *context, struct talus_error *error)
+{
+    /* The index has everything, in this order. */
+    static const char sql[] =
+        "SELECT id, owner, threads, priority FROM ("
+        "SELECT id, owner, threads, priority, deleting,"
+        " row_number() OVER (PARTITION BY owner ORDER BY priority DESC, id) AS place"
+        " FROM jobs INDEXED BY jobs_queued_by_owner WHERE state = 0) WHERE place <= 16"
+        " AND deleting = 0";
+    enum talus_status status = TALUS_IO;
+    (void)pthread_mutex_lock(&store->reader_mutex);
+    sqlite3_stmt *statement = store_prepare(store->reader, sql, error);
+    if (statement != NULL) {
+        int step;
+        while ((step = sqlite3_step(statement)) == SQLITE_ROW) {
+            const struct store_queued job = {
+                .id = (const char *)sqlite3_column_text(statement, 0),
+                .owner = (const char *)sqlite3_column_text(statement, 1),
+                .threads = sqlite3_column_int64(statement, 2),
+                .priority = sqlite3_column_int64(statement, 3),
+            };
+            visit(&job, context);
+        }
+        status = step == SQLITE_DONE ? TALUS_OK : store_failure(store->reader, error);
+        store_release(statement);
+    }
+    (void)pthread_mutex_unlock(&store->reader_mutex);
+    return status;
+}
+
 enum talus_status store_job_counts(struct store *store, int64_t counts[JOB_STATE_COUNT],
                                    struct talus_error *error)
 {

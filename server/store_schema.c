@@ -41,6 +41,8 @@ static const char *const parts[] = {
     " WHEN new.labels IS NOT old.labels BEGIN"
     " DELETE FROM job_labels WHERE job = new.id;"
     " INSERT INTO job_labels SELECT key, value, new.id FROM json_each(new.labels); END",
+    "CREATE INDEX IF NOT EXISTS jobs_queued_by_owner ON jobs"
+    " (state, owner, priority DESC, id, threads, deleting)",
     /* Of what may answer for another job of the same scene. */
     "CREATE INDEX IF NOT EXISTS jobs_by_scene ON jobs (scene_hash, build, id)"
     " WHERE state = 2 AND steered = 0 AND deleting = 0",

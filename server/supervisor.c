@@ -6,6 +6,7 @@
 #include "calibration.h"
 #include "events.h"
 #include "executor_local.h"
+#include "fair_share.h"
 #include "folder.h"
 #include "jobs.h"
 #include "moment.h"
@@ -40,6 +41,7 @@ struct supervisor {
     pthread_mutex_t mutex; /* of the list of attempts and their progress */
     struct attempt *first;
     struct scheduler scheduler;
+    struct fair_share share;
     double start_after; /* no start before (monotonic): the last one failed */
     atomic_uint_fast64_t progress_count;
     uint64_t empty_at; /* the store's commit count when nothing was queued */
@@ -60,7 +62,8 @@ enum talus_status supervisor_create(struct supervisor **result, struct service *
     if (supervisor->wake >= 0 && supervisor->ends >= 0)
         return TALUS_OK;
     if (supervisor->wake >= 0)
-        (void)close(supervisor->wake);
+        fair_share_release(&supervisor->share);
+    (void)close(supervisor->wake);
     free(supervisor);
     *result = NULL;
     return talus_error_set(error, TALUS_INTERNAL, "eventfd", "", "cannot make an eventfd");
@@ -295,19 +298,36 @@ static void attempt_service(struct supervisor *supervisor, struct attempt *attem
 }
 
 struct candidates {
-    struct scheduler_candidate items[CANDIDATES_MAX];
-    size_t count;
-    int64_t workers; /* no job is wider than the machine is now */
+    const struct fair_share *share;
+    struct scheduler_candidate *items;
+    size_t count, capacity;
+    int64_t workers;      /* no job is wider than the machine is now */
+    double quota_running; /* jobs of one owner that run at once, 0: any */
+    bool failed;
 };
 
-static bool candidate_add(const struct job *job, void *context)
+static void candidate_add(const struct store_queued *job, void *context)
 {
     struct candidates *candidates = context;
-    struct scheduler_candidate *candidate = &candidates->items[candidates->count];
+    const char *owner = job->owner == NULL ? "" : job->owner;
+    if (candidates->quota_running > 0 &&
+        (double)fair_share_jobs(candidates->share, owner) >= candidates->quota_running)
+        return;
+    if (candidates->count == candidates->capacity) {
+        size_t capacity = candidates->capacity == 0 ? 64 : 2 * candidates->capacity;
+        struct scheduler_candidate *items =
+            realloc(candidates->items, capacity * sizeof *candidates->items);
+        candidates->failed = candidates->failed || items == NULL;
+        if (items == NULL)
+            return;
+        candidates->items = items;
+        candidates->capacity = capacity;
+    }
+    struct scheduler_candidate *candidate = &candidates->items[candidates->count++];
+    *candidate = (struct scheduler_candidate){.priority = job->priority};
     (void)snprintf(candidate->id, sizeof candidate->id, "%s", job->id);
+    (void)snprintf(candidate->owner, sizeof candidate->owner, "%s", owner);
     candidate->threads = job->threads < candidates->workers ? job->threads : candidates->workers;
-    candidates->count++;
-    return candidates->count < CANDIDATES_MAX;
 }
 
 /* Begins an attempt under its lock, which the worker inherits; without a lock (the folder is gone)
@@ -388,28 +408,68 @@ int64_t supervisor_threads(struct supervisor *supervisor)
     return threads;
 }
 
-static void jobs_start(struct supervisor *supervisor, double now)
+/* Notes what runs, for the order of what waits. */
+static void share_note(struct supervisor *supervisor, double now)
+{
+    fair_share_begin(&supervisor->share, now);
+    for (const struct attempt *attempt = supervisor->first; attempt != NULL;
+         attempt = attempt->next)
+        (void)fair_share_note(&supervisor->share, attempt->owner, attempt->threads);
+}
+
+/* Starts the job whose turn it is. False: none may start now. */
+static bool next_start(struct supervisor *supervisor, double now)
 {
     struct service *service = supervisor->service;
-    const struct store_filter filter = {
-        .state = JOB_QUEUED, .limit = CANDIDATES_MAX, .by_queue = true};
-    while (!atomic_load(&service->draining) && now >= supervisor->start_after &&
-           threads_free(supervisor) > 0) {
-        struct candidates candidates = {.workers = (int64_t)service->config->workers};
-        struct talus_error error = {0};
-        uint64_t count = store_commit_count(service->store);
-        if (count == supervisor->empty_at ||
-            store_job_list(service->store, &filter, candidate_add, &candidates, &error) != TALUS_OK)
-            return;
-        if (candidates.count == 0)
-            supervisor->empty_at = count;
+    struct candidates candidates = {.share = &supervisor->share,
+                                    .workers = (int64_t)service->config->workers,
+                                    .quota_running = service->config->quota_running};
+    struct talus_error error = {0};
+    uint64_t count = store_commit_count(service->store);
+    bool started = false;
+    share_note(supervisor, now);
+    if (count != supervisor->empty_at &&
+        store_queue_heads(service->store, candidate_add, &candidates, &error) == TALUS_OK &&
+        !candidates.failed) {
+        fair_share_order(&supervisor->share, candidates.items, candidates.count);
         size_t index = scheduler_pick(&supervisor->scheduler, candidates.items, candidates.count,
                                       threads_free(supervisor), now);
-        if (index == candidates.count)
-            return;
-        if (!job_start(supervisor, candidates.items[index].id))
+        started = index < candidates.count;
+        if (started && !job_start(supervisor, candidates.items[index].id))
             supervisor->start_after = now + spawn_retry_seconds;
+        /* With a quota it may be the end of a job that lets another one start. */
+        if (candidates.count == 0 && service->config->quota_running <= 0)
+            supervisor->empty_at = count;
     }
+    free(candidates.items);
+    return started;
+}
+
+static void jobs_start(struct supervisor *supervisor, double now)
+{
+    bool more = true;
+    share_note(supervisor, now);
+    while (more && !atomic_load(&supervisor->service->draining) && now >= supervisor->start_after &&
+           threads_free(supervisor) > 0)
+        more = next_start(supervisor, now);
+    share_note(supervisor, now);
+}
+
+/* Seconds until a place gets free, as far as running jobs tell. */
+double supervisor_patience(struct supervisor *supervisor)
+{
+    double least = 60;
+    (void)pthread_mutex_lock(&supervisor->mutex);
+    if (threads_free(supervisor) > 0)
+        least = 1;
+    for (const struct attempt *attempt = supervisor->first; attempt != NULL;
+         attempt = attempt->next) {
+        const json_t *eta = json_object_get(attempt->progress, "eta_seconds");
+        if (json_is_number(eta) && json_number_value(eta) < least)
+            least = json_number_value(eta);
+    }
+    (void)pthread_mutex_unlock(&supervisor->mutex);
+    return least < 1 ? 1 : least;
 }
 
 /* Whether nothing is expected of an attempt that would not wake the thread. */

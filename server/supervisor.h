@@ -30,4 +30,8 @@ json_t *supervisor_progress(struct supervisor *supervisor, const char *id);
 /* Grows when the progress of any job has changed. */
 uint64_t supervisor_progress_count(const struct supervisor *supervisor);
 
+/* Seconds after which a place in the queue may be free, as far as running jobs tell; at least 1, at
+ * most 60. */
+double supervisor_patience(struct supervisor *supervisor);
+
 #endif

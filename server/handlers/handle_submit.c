@@ -10,6 +10,7 @@
 #include "schemas.h"
 #include "studies/study_request.h"
 #include "submission.h"
+#include "supervisor.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -89,6 +90,18 @@ static void reply_job(struct request *request, unsigned int status, const struct
         reply_header(&request->reply, "Idempotent-Replayed", "true");
 }
 
+static void reply_too_many(struct request *request, const char *code, const char *detail)
+{
+    char seconds[16];
+    (void)snprintf(seconds, sizeof seconds, "%.0f",
+                   ceil(supervisor_patience(request->service->supervisor)));
+    reply_problem(&request->reply, MHD_HTTP_TOO_MANY_REQUESTS, code, request->raw, NULL, "%s",
+                  detail);
+    if (request->reply.response != NULL)
+        (void)MHD_del_response_header(request->reply.response, MHD_HTTP_HEADER_RETRY_AFTER, "5");
+    reply_header(&request->reply, MHD_HTTP_HEADER_RETRY_AFTER, seconds);
+}
+
 /* Answers for a key that is known. */
 static void reply_known(struct request *request, enum store_insert known, const char *existing)
 {
@@ -98,8 +111,13 @@ static void reply_known(struct request *request, enum store_insert known, const 
         reply_problem(&request->reply, MHD_HTTP_UNPROCESSABLE_CONTENT, "idempotency_key",
                       request->raw, NULL, "this Idempotency-Key came with another body before");
     } else if (known == STORE_QUEUE_FULL) {
-        reply_problem(&request->reply, MHD_HTTP_TOO_MANY_REQUESTS, "queue_full", request->raw, NULL,
-                      "%.0f jobs are queued already", request->service->config->queue_limit);
+        reply_too_many(request, "queue_full", "as many jobs are queued as the daemon takes");
+    } else if (known == STORE_QUOTA_QUEUED) {
+        reply_too_many(request, "quota", "as many of your jobs are queued as you may have");
+    } else if (known == STORE_QUOTA_DISK) {
+        reply_too_many(request, "quota",
+                       "with this job's results yours would take more disk than you may have; "
+                       "delete some");
     } else if (store_job_read(request->service->store, existing, &job, &error) == TALUS_OK) {
         reply_job(request, MHD_HTTP_CREATED, &job, true);
         job_release(&job);

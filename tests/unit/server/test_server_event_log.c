@@ -36,7 +36,8 @@ static void test_repair(void **state)
     char *folder = fixture_folder(), *path = folder_join(folder, "db.sqlite");
     struct job job = fixture_job("j");
     assert_int_equal(store_open(path, &store, &error), TALUS_OK);
-    assert_int_equal(store_job_insert(store, &job, NULL, 0, &result, existing, &error), TALUS_OK);
+    assert_int_equal(store_job_insert(store, &job, NULL, NULL, &result, existing, &error),
+                     TALUS_OK);
     fixture_write(folder, events_file, torn, sizeof torn - 1, 0);
     assert_int_equal(event_log_last_number(folder), 0);
     assert_int_equal(event_log_repair(store, "j", folder, &error), TALUS_OK);

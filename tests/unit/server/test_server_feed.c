@@ -38,8 +38,9 @@ static void jobs_insert(struct fixture *fixture, int first, int end)
     for (int number = first; number < end; number++) {
         (void)snprintf(id, sizeof id, "j%06d", number);
         struct job job = fixture_job(id);
-        assert_int_equal(store_job_insert(fixture->store, &job, NULL, 0, &result, existing, &error),
-                         TALUS_OK);
+        assert_int_equal(
+            store_job_insert(fixture->store, &job, NULL, NULL, &result, existing, &error),
+            TALUS_OK);
         job_release(&job);
     }
 }

@@ -44,7 +44,8 @@ static enum store_insert insert(struct store *store, const char *id, const char 
     enum store_insert result;
     struct job job = fixture_job(id);
     const struct store_key both = {.owner = "", .key = key, .body = body};
-    assert_int_equal(store_job_insert(store, &job, key == NULL ? NULL : &both, queue_limit, &result,
+    assert_int_equal(store_job_insert(store, &job, key == NULL ? NULL : &both,
+                                      &(struct store_limits){.queued = queue_limit}, &result,
                                       existing, &error),
                      TALUS_OK);
     job_release(&job);
@@ -83,7 +84,7 @@ static void test_every_column_survives(void **state)
     /* A job of a study takes a place that waits for it. */
     job.study_row = 0;
     study_insert(fixture->store, job.study);
-    assert_int_equal(store_job_insert(fixture->store, &job, NULL, 0, &result, existing, &error),
+    assert_int_equal(store_job_insert(fixture->store, &job, NULL, NULL, &result, existing, &error),
                      TALUS_OK);
     store_close(fixture->store);
     assert_int_equal(store_open(fixture->path, &fixture->store, &error), TALUS_OK);
@@ -221,8 +222,9 @@ static void test_lists(void **state)
         assert_int_equal(
             job_text_set(&job.labels, index == 2 ? "{\"a\\\"b\":\"c:d\"}" : "{}", &error),
             TALUS_OK);
-        assert_int_equal(store_job_insert(fixture->store, &job, NULL, 0, &result, existing, &error),
-                         TALUS_OK);
+        assert_int_equal(
+            store_job_insert(fixture->store, &job, NULL, NULL, &result, existing, &error),
+            TALUS_OK);
         job_release(&job);
     }
     assert_int_equal(store_job_change(fixture->store, "j1", change_cancel, NULL, NULL, &error),
@@ -259,7 +261,8 @@ static void *writer_main(void *argument)
         char id[32], existing[64];
         (void)snprintf(id, sizeof id, "j%d-%d", writer->number, index);
         if (job_text_set(&job.id, id, &error) != TALUS_OK || job_enter(&job, &error) != TALUS_OK ||
-            store_job_insert(writer->store, &job, NULL, 0, &result, existing, &error) != TALUS_OK)
+            store_job_insert(writer->store, &job, NULL, NULL, &result, existing, &error) !=
+                TALUS_OK)
             writer->failures++;
         job_release(&job);
     }

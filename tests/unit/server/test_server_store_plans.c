@@ -21,7 +21,8 @@ static void job_add(struct store *store, int number)
     struct job job = fixture_job(id);
     assert_int_equal(job_text_set(&job.labels, labels, &error), TALUS_OK);
     job.state = number % 3 == 0 ? JOB_FAILED : JOB_SUCCEEDED;
-    assert_int_equal(store_job_insert(store, &job, NULL, 0, &result, existing, &error), TALUS_OK);
+    assert_int_equal(store_job_insert(store, &job, NULL, NULL, &result, existing, &error),
+                     TALUS_OK);
     job_release(&job);
 }
 

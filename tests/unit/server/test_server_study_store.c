@@ -80,7 +80,7 @@ static enum talus_status job_enters(struct store *store, const char *id, const c
     struct job job = fixture_job(id);
     job.study = strdup(study);
     job.study_row = row;
-    enum talus_status status = store_job_insert(store, &job, NULL, 0, &result, existing, error);
+    enum talus_status status = store_job_insert(store, &job, NULL, NULL, &result, existing, error);
     job_release(&job);
     return status;
 }
@@ -339,7 +339,7 @@ static void test_finished_jobs_are_found(void **state)
     enum store_insert result;
     char existing[64], found[64];
     job.scene_hash = strdup("h1");
-    assert_int_equal(store_job_insert(fixture->store, &job, NULL, 0, &result, existing, &error),
+    assert_int_equal(store_job_insert(fixture->store, &job, NULL, NULL, &result, existing, &error),
                      TALUS_OK);
     job_release(&job);
     assert_int_equal(store_job_find_finished(fixture->store, "h1", "b1", found, &error), TALUS_OK);
