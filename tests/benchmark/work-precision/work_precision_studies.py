@@ -8,6 +8,7 @@
 A study asks for its error from a reference in the scene, so each problem's error is put as one:
 README.md of the folder of studies says what it is, and by what factor it differs from the chart's.
 """
+import csv
 import math
 import pathlib
 import sys
@@ -15,7 +16,7 @@ import sys
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "studies"))
 import study_file
 from methods import METHODS
-from problems import Cantilever, Column, DamBreak
+from problems import ROOT, Cantilever, Column, DamBreak
 
 
 def cantilever_reference(problem, scene):
@@ -60,6 +61,13 @@ def differences(base, other, pointer=""):
     return found
 
 
+def refused_methods(problem):
+    """What the chart's table says: a study takes no row that Talus refuses."""
+    with open(ROOT / "docs" / "work-precision" / "work-precision.csv", newline="") as file:
+        return {row["method"] for row in csv.DictReader(file)
+                if row["problem"] == problem.name and row["remark"].startswith("refused")}
+
+
 def study(name, problem, refer):
     """`solver` is set whole by the variants: what a problem adds to every method is in each."""
     def scene(cells, method):
@@ -73,7 +81,7 @@ def study(name, problem, refer):
         set_keys = differences(base, scene(cells, {})) or {"/grid/cell": base["grid"]["cell"]}
         resolutions.append({"label": f"{cells} cells", "set": set_keys})
     variants = [{"label": label, "set": {"/solver": scene(problem.resolutions[0], method)["solver"]}}
-                for label, method in METHODS.items()]
+                for label, method in METHODS.items() if label not in refused_methods(problem)]
     base["title"] = f"accuracy against cost: {name}"
     error = refer(problem, base)
     return {"name": f"work-precision {name}", "scene": base,
