@@ -8,13 +8,12 @@ static const double machine_spread = 0.6;
 /* ... of a class within a machine, of a method within its class, of a run within its method: what
  * the rates do not know of scenes (how a flow fills its blocks, how many walls it touches). */
 static const double class_spread = 0.25, method_spread = 0.2, run_spread = 0.15;
-/* Of waiting: how far a machine is from idle, and how that changes from run to run. A short run
- * does little but write files, each of which waits for a disk that others use. */
+/* Of waiting: how far a machine is from idle, and how that changes from run to run. Each
+ * file waits for a disk that others use, too: where files are most of a run, by the disk. */
 static const struct wait {
     const char *name;
-    double least; /* [s] that a run is predicted to take */
     double level_spread, run_spread;
-} waits[] = {{"wall", 0.3, 0.2, 0.15}, {"wall/short", 0.0, 0.6, 0.4}};
+} waits[] = {{"wall", 0.2, 0.15}, {"wall/files", 0.6, 0.4}};
 /* Runs that the spreads above are worth, against what has been seen. */
 static const double prior_freedom = 4.0;
 /* More runs than that do not make the mean of a level more certain: machines change. */
@@ -81,20 +80,15 @@ struct calibration_belief scene_calibration_cost(const json_t *calibration,
     return belief;
 }
 
-static const struct wait *wait_of(double predicted)
+const char *scene_calibration_wait_name(bool files)
 {
-    return predicted >= waits[0].least ? &waits[0] : &waits[1];
+    return waits[files ? 1 : 0].name;
 }
 
-const char *scene_calibration_wait_name(double predicted)
-{
-    return wait_of(predicted)->name;
-}
-
-struct calibration_belief scene_calibration_wait(const json_t *calibration, double predicted,
+struct calibration_belief scene_calibration_wait(const json_t *calibration, bool files,
                                                  double threads)
 {
-    const struct wait *wait = wait_of(predicted);
+    const struct wait *wait = &waits[files ? 1 : 0];
     const json_t *load = json_object_get(calibration, "load");
     double cores = json_number_value(json_object_get(load, "cores"));
     double busy = fmax(json_number_value(json_object_get(load, "busy")), 0.0);

@@ -3,8 +3,8 @@
  *
  * Whoever keeps the calibration knows, under opaque names, running statistics of log(measured /
  * predicted): how many runs they are worth, their mean and their variance. Under the names of a
- * method they are of processor time, under "wall" of wall time over that ("wall/short" of runs that
- * are over in no time: they wait for the disk, not for a core). A run's own method counts
+ * method they are of processor time, under "wall" of wall time over that ("wall/files" of runs that
+ * do little but write files: they wait for the disk, not for a core). A run's own method counts
  * most, runs of its class and of the machine where there are few of it: each level is a normal
  * prior for the next (Gelman et al., Bayesian Data Analysis, 3rd ed., sec. 5.4, with the spreads
  * between methods as stated in scene_calibration.c). */
@@ -20,9 +20,9 @@ struct calibration_belief {
     double mean, variance, freedom;
 };
 
-/* Name under which wall time over processor time is learned, of a run predicted to take so long
- * [s]. */
-const char *scene_calibration_wait_name(double predicted);
+/* Name under which wall time over processor time is learned; `files`: of runs that do little but
+ * write files. */
+const char *scene_calibration_wait_name(bool files);
 
 /* Belief in log(processor time / predicted) of the next run with these keys. `calibration`:
  * {"ratios": {NAME: [weight, mean, variance], ...}, "load": {"cores", "busy"}}; everything may be
@@ -30,8 +30,8 @@ const char *scene_calibration_wait_name(double predicted);
 struct calibration_belief scene_calibration_cost(const json_t *calibration,
                                                  const struct scene_cost_keys *keys);
 /* The same of log(wall time / what the processor time lets expect), on a machine with that load and
- * this run's threads; `predicted` as above. */
-struct calibration_belief scene_calibration_wait(const json_t *calibration, double predicted,
+ * this run's threads; `files` as above. */
+struct calibration_belief scene_calibration_wait(const json_t *calibration, bool files,
                                                  double threads);
 
 /* Both together, as if independent, with a spread of their product known from elsewhere (standard

@@ -39,6 +39,9 @@ static const double crossing_seconds = 0.5e-6; /* for a particle that changes ce
 static const double start_seconds = 0.015;     /* of the process, with its libraries */
 static const double seed_seconds = 0.5e-6;     /* for a particle */
 static const double file_seconds = 1.3e-3;     /* of a frame's file */
+static const double flush_seconds = 3e-3;      /* that a file waits for a disk */
+static const double flush_share = 0.3;         /* of the steps, beyond which that matters */
+static const double end_files = 8.0;           /* tables, receipt, lists of frames */
 static const double byte_seconds = 15e-9;      /* compressed, and its checksum */
 static const double number_seconds = 0.3e-6;   /* of a history in its tables */
 static const double sample_seconds = 5e-9;     /* of a row, for a particle and probe */
@@ -144,6 +147,7 @@ struct scene_cost scene_cost_make(const struct talus_scene *scene,
         .step = step_seconds + 1e-9 * rate.cell * (double)estimate->active_cell_count,
         .particle_step = 1e-9 * rate.particle + crossing_seconds * estimate->crossing_share,
         .background = output->frame_count * frame,
+        .files = end_files + output->frame_count * (scene->output.grid_fields != 0 ? 2.0 : 1.0),
     };
     if (cost.threads > 1.0)
         cost.step += barrier_seconds * cost.threads;
@@ -160,4 +164,10 @@ double scene_cost_wall(const struct scene_cost *cost, double steps, double parti
 {
     double stepping = (steps * cost->step + particle_steps * cost->particle_step) / cost->threads;
     return cost->fixed - cost->background + fmax(stepping, cost->background);
+}
+
+bool scene_cost_is_files(const struct scene_cost *cost, double steps, double particle_steps)
+{
+    double stepping = (steps * cost->step + particle_steps * cost->particle_step) / cost->threads;
+    return flush_seconds * cost->files > flush_share * stepping;
 }

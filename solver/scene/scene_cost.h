@@ -13,6 +13,7 @@ struct scene_cost {
     double particle_step; /* [s] */
     double threads;       /* that the steps use */
     double background;    /* [s] part of `fixed` that goes on beside the steps */
+    double files;         /* that are written and flushed */
 };
 
 struct scene_cost scene_cost_make(const struct talus_scene *scene,
@@ -22,6 +23,10 @@ struct scene_cost scene_cost_make(const struct talus_scene *scene,
 double scene_cost_cpu(const struct scene_cost *cost, double steps, double particle_steps);
 /* The same by the clock, where nobody else wants a core. */
 double scene_cost_wall(const struct scene_cost *cost, double steps, double particle_steps);
+
+/* Whether the run, with so many steps, does little but write files, each of which waits for the
+ * disk. */
+bool scene_cost_is_files(const struct scene_cost *cost, double steps, double particle_steps);
 
 /* What a scene is called where costs are learned, from the very method to all runs of a processor:
  * the same name, the same cost but for what the rates know. */

@@ -82,9 +82,11 @@ static json_t *learn_json(const struct scene_cost *cost, const struct scene_cost
         (void)json_array_append_new(names, json_string(keys->level[level]));
     double wall = scene_cost_wall(cost, amount.steps, amount.particle_steps);
     double cpu = scene_cost_cpu(cost, amount.steps, amount.particle_steps);
-    return json_pack("{s:o, s:{s:f, s:f, s:f}, s:s, s:f}", "names", names, "cpu_seconds", "fixed",
-                     cost->fixed, "steps", cost->step, "particle_steps", cost->particle_step,
-                     "wall_name", scene_calibration_wait_name(wall), "wall_over_cpu", wall / cpu);
+    return json_pack(
+        "{s:o, s:{s:f, s:f, s:f}, s:s, s:f}", "names", names, "cpu_seconds", "fixed", cost->fixed,
+        "steps", cost->step, "particle_steps", cost->particle_step, "wall_name",
+        scene_calibration_wait_name(scene_cost_is_files(cost, amount.steps, amount.particle_steps)),
+        "wall_over_cpu", wall / cpu);
 }
 
 /* Adds wall time, processor time and what can be learned from the run. */
@@ -97,11 +99,12 @@ static int add_time(json_t *forecast, const struct talus_scene *scene,
     const struct amount amount = amount_of(estimate, estimate->step_count);
     const double wall = scene_cost_wall(&cost, amount.steps, amount.particle_steps);
     const double cpu = scene_cost_cpu(&cost, amount.steps, amount.particle_steps);
+    const bool files = scene_cost_is_files(&cost, amount.steps, amount.particle_steps);
     scene_cost_keys_make(scene, (int)cost.threads, &keys);
     const struct calibration_belief belief = scene_calibration_cost(calibration, &keys);
     const struct calibration_interval interval = scene_calibration_interval(
         wall,
-        scene_calibration_join(belief, scene_calibration_wait(calibration, wall, cost.threads),
+        scene_calibration_join(belief, scene_calibration_wait(calibration, files, cost.threads),
                                step_spread(&cost, estimate)));
     return json_object_set_new(forecast, "wall_seconds",
                                json_pack("{s:f, s:f, s:f}", "low", interval.low, "expected",

@@ -99,8 +99,8 @@ static json_t *calibration(enum fixture_base base, size_t level, double weight, 
 {
     json_t *plain = forecast(base, NULL, NULL, NULL);
     json_t *made = json_pack("{s:{s:[f, f, f], s:[f, f, f]}}", "ratios", name_of(plain, level),
-                             weight, log(ratio), spread * spread, scene_calibration_wait_name(1e3),
-                             weight, 0.0, spread * spread);
+                             weight, log(ratio), spread * spread,
+                             scene_calibration_wait_name(false), weight, 0.0, spread * spread);
     json_decref(plain);
     assert_non_null(made);
     return made;

@@ -103,7 +103,7 @@ static struct score play(struct machine machine, size_t from)
         struct calibration_interval interval = scene_calibration_interval(
             predicted,
             scene_calibration_join(scene_calibration_cost(calibration, &keys),
-                                   scene_calibration_wait(calibration, predicted, 1.0), 0.0));
+                                   scene_calibration_wait(calibration, false, 1.0), 0.0));
         double cost = machine.offset + machine.class_offset[method % CLASS_COUNT] +
                       machine.method_offset[method] + machine.run_spread * normal(&machine.random);
         double wait = fmax(0.0, machine.wait_mean + machine.wait_spread * normal(&machine.random));
@@ -116,7 +116,7 @@ static struct score play(struct machine machine, size_t from)
         }
         for (size_t level = 0; level < COST_LEVEL_COUNT; level++)
             learn(all, ratios, keys.level[level], cost, 20.0);
-        learn(all, ratios, scene_calibration_wait_name(predicted), wait, 10.0);
+        learn(all, ratios, scene_calibration_wait_name(false), wait, 10.0);
     }
     json_decref(calibration);
     json_decref(ratios);
