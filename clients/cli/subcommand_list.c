@@ -2,6 +2,8 @@
 #include "job_text.h"
 #include "subcommand.h"
 
+#include <stdbool.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -9,7 +11,9 @@ enum { PAGE_MAX = 500, COUNT_MAX = 1000000 };
 
 static const struct option_spec options[] = {
     {"state", "STATE", "only jobs that are queued, running, succeeded, failed or cancelled"},
-    {"label", "KEY=VALUE", "only jobs with that label"},
+    {"label", "KEY=VALUE", "only jobs with that label; may be repeated"},
+    {"study", "ID", "only jobs of that study"},
+    {"text", "TEXT", "only jobs whose name contains that"},
     {"limit", "N", "at most that many jobs (default 50)"},
     {NULL, NULL, NULL},
 };
@@ -26,33 +30,42 @@ static void print_job(const json_t *job)
                  json_text(job, "reason"));
 }
 
-/* "?limit=..&state=..": values are escaped; NULL when memory ran out. */
+/* Appends "&name=value" with the value escaped; false if it does not fit. */
+static bool add_parameter(struct connection *connection, char *path, size_t size, const char *name,
+                          const char *value)
+{
+    const size_t length = strlen(path);
+    char *plain = strdup(value);
+    char *equals = plain == NULL || strcmp(name, "label") != 0 ? NULL : strchr(plain, '=');
+    if (equals != NULL)
+        *equals = ':'; /* how the server separates a label's key and value */
+    char *escaped = plain == NULL ? NULL : curl_easy_escape(connection->curl, plain, 0);
+    const int added =
+        escaped == NULL ? -1 : snprintf(path + length, size - length, "&%s=%s", name, escaped);
+    curl_free(escaped);
+    free(plain);
+    return added >= 0 && (size_t)added < size - length;
+}
+
+/* "?limit=..&state=.."; NULL when the options are too long or memory ran out. */
 static char *make_path(struct connection *connection, const struct arguments *arguments, long limit,
                        const char *cursor)
 {
-    const char *names[] = {"state", "label", "cursor"};
-    const char *values[] = {arguments_value(arguments, "state"),
-                            arguments_value(arguments, "label"), cursor};
     char path[4096];
-    size_t length = (size_t)snprintf(path, sizeof path, "/v1/jobs?limit=%ld", limit);
-    for (size_t index = 0; index < 3; index++) {
-        if (values[index] == NULL)
-            continue;
-        char *plain = strdup(values[index]);
-        char *equals = index != 1 || plain == NULL ? NULL : strchr(plain, '=');
-        if (equals != NULL)
-            *equals = ':'; /* how the server separates a label's key and value */
-        char *escaped = plain == NULL ? NULL : curl_easy_escape(connection->curl, plain, 0);
-        if (escaped != NULL && length < sizeof path)
-            length += (size_t)snprintf(path + length, sizeof path - length, "&%s=%s", names[index],
-                                       escaped);
-        const bool failed = escaped == NULL || length >= sizeof path;
-        curl_free(escaped);
-        free(plain);
-        if (failed)
-            return NULL;
+    bool good = true;
+    (void)snprintf(path, sizeof path, "/v1/jobs?limit=%ld", limit);
+    for (size_t index = 0; index < arguments->given_count && good; index++) {
+        const char *name = arguments->given[index].name;
+        if (strcmp(name, "label") == 0 ||
+            ((strcmp(name, "state") == 0 || strcmp(name, "study") == 0 ||
+              strcmp(name, "text") == 0) &&
+             arguments->given[index].value == arguments_value(arguments, name)))
+            good =
+                add_parameter(connection, path, sizeof path, name, arguments->given[index].value);
     }
-    return strdup(path);
+    if (good && cursor != NULL)
+        good = add_parameter(connection, path, sizeof path, "cursor", cursor);
+    return good ? strdup(path) : NULL;
 }
 
 /* Fetches one page into jobs; *cursor is replaced by that of the next page (NULL: none). */

@@ -56,6 +56,28 @@ class Results(DaemonTest):
             units = {name: group["PointData"][name].attrs["units"] for name in arrays}
             return dict(arrays, position=group["Points"][...]), units
 
+    def test_members_of_a_job(self):
+        """Every name that is promised is there."""
+        for name in ("id", "name", "labels", "state", "reason", "detail", "created_at", "started_at",
+                     "finished_at", "attempts", "progress", "forecast", "advice", "metrics", "receipt",
+                     "links", "priority", "threads", "limits", "retries", "cancel_requested"):
+            self.assertIn(name, self.job)
+        for name in ("fraction", "time", "step", "time_step", "particles",
+                     "particle_steps_per_second", "eta_seconds"):
+            self.assertIn(name, self.job["progress"])
+        for name in ("particles", "active_cells", "critical_time_step", "steps", "memory_bytes",
+                     "disk_bytes", "wall_seconds"):
+            self.assertIn(name, self.job["forecast"])
+        for name in ("probe.top.final", "probe.top.min", "probe.top.max", "probe.top.time_of_max",
+                     "reaction.floor.peak", "reaction.floor.peak_time", "energy_error",
+                     "energy_numerical", "momentum_error", "mass_error", "wall_seconds",
+                     "cpu_seconds", "peak_memory_bytes", "particle_steps_per_second"):
+            self.assertIn(name, self.job["metrics"])
+        receipt = self.job["receipt"]
+        for name in ("scene_hash", "build", "compiler", "isa", "threads", "results", "command"):
+            self.assertTrue(receipt[name], name)
+        self.assertEqual(receipt, self.get("/files/receipt.json").json())
+
     def test_list(self):
         frames = self.get("/frames").json()
         self.assertEqual([frame["n"] for frame in frames], [0, 1, 2, 3])
