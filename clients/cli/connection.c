@@ -241,14 +241,19 @@ static size_t escape(const char *text, bool keep_slashes, char *out)
 
 char *job_path(const char *id, const char *suffix, const char *name)
 {
-    const size_t size =
-        32 + 3 * strlen(id) + strlen(suffix) + (name == NULL ? 0 : 3 * strlen(name));
+    return resource_path("jobs", id, suffix, name);
+}
+
+char *resource_path(const char *collection, const char *id, const char *suffix, const char *name)
+{
+    const size_t size = 32 + strlen(collection) + 3 * strlen(id) + strlen(suffix) +
+                        (name == NULL ? 0 : 3 * strlen(name));
     char *path = malloc(size);
     if (path == NULL) {
         (void)fprintf(stderr, "talus: out of memory\n");
         return NULL;
     }
-    size_t length = (size_t)snprintf(path, size, "/v1/jobs/");
+    size_t length = (size_t)snprintf(path, size, "/v1/%s/", collection);
     length += escape(id, false, path + length);
     length += (size_t)snprintf(path + length, size - length, "%s", suffix);
     if (name != NULL)

@@ -58,5 +58,7 @@ int connection_ask(struct connection *connection, const struct http_request *req
 /* "/v1/jobs/ID" + suffix, with the ID and `name` (may be NULL; its slashes stay) escaped; free it.
  * NULL, with a message, when memory ran out. */
 char *job_path(const char *id, const char *suffix, const char *name);
+/* The same under another collection than "jobs": "studies". */
+char *resource_path(const char *collection, const char *id, const char *suffix, const char *name);
 
 #endif

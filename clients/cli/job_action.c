@@ -24,16 +24,23 @@ static void print_outcome(const struct connection *connection, const char *id, c
 int job_action_run(struct connection *connection, const struct arguments *arguments,
                    const char *method, const char *suffix)
 {
+    return resource_action_run(connection, "jobs", arguments->operands, arguments->operand_count,
+                               method, suffix);
+}
+
+int resource_action_run(struct connection *connection, const char *collection, char *const *ids,
+                        int count, const char *method, const char *suffix)
+{
     int worst = EXIT_DONE;
-    for (int index = 0; index < arguments->operand_count; index++) {
+    for (int index = 0; index < count; index++) {
         json_t *job = NULL;
-        char *path = job_path(arguments->operands[index], suffix, NULL);
+        char *path = resource_path(collection, ids[index], suffix, NULL);
         if (path == NULL)
             return EXIT_USAGE;
         const struct http_request request = {.method = method, .path = path};
         const int code = connection_ask(connection, &request, &job);
         if (code == EXIT_DONE)
-            print_outcome(connection, arguments->operands[index], job);
+            print_outcome(connection, ids[index], job);
         worst = code > worst ? code : worst;
         json_decref(job);
         free(path);

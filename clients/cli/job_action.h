@@ -9,5 +9,8 @@
  * after a refusal; returns the worst exit code. */
 int job_action_run(struct connection *connection, const struct arguments *arguments,
                    const char *method, const char *suffix);
+/* The same for some ids of another collection than "jobs". */
+int resource_action_run(struct connection *connection, const char *collection, char *const *ids,
+                        int count, const char *method, const char *suffix);
 
 #endif

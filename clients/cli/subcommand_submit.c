@@ -1,14 +1,11 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 #include "job_text.h"
-#include "problem_text.h"
 #include "subcommand.h"
+#include "submit_request.h"
 #include "watch.h"
 
-#include <errno.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/random.h>
-#include <time.h>
 
 static const struct option_spec options[] = {
     {"name", "NAME", "a name for people"},
@@ -21,24 +18,6 @@ static const struct option_spec options[] = {
     {"watch", NULL, "follow the job to its end, like `talus watch`"},
     {NULL, NULL, NULL},
 };
-
-/* The scene of a file ("-": standard input); NULL, with a message, if it is not JSON. */
-static json_t *read_scene(const char *path)
-{
-    json_error_t mistake;
-    FILE *stream = strcmp(path, "-") == 0 ? stdin : fopen(path, "rb");
-    if (stream == NULL) {
-        (void)fprintf(stderr, "talus: cannot open %s: %s\n", path, strerror(errno));
-        return NULL;
-    }
-    json_t *scene = json_loadf(stream, JSON_REJECT_DUPLICATES, &mistake);
-    if (scene == NULL)
-        (void)fprintf(stderr, "talus: %s is not JSON: line %d, column %d: %s\n", path, mistake.line,
-                      mistake.column, mistake.text);
-    if (stream != stdin)
-        (void)fclose(stream);
-    return scene;
-}
 
 static bool add_labels(json_t *body, const struct arguments *arguments)
 {
@@ -84,7 +63,7 @@ static bool add_numbers(json_t *body, const struct arguments *arguments)
 /* The body of the request as text; NULL with a message. */
 static char *make_body(const struct arguments *arguments)
 {
-    json_t *scene = read_scene(arguments->operands[0]);
+    json_t *scene = json_file_read(arguments->operands[0]);
     if (scene == NULL)
         return NULL;
     char *text = NULL;
@@ -101,20 +80,6 @@ static char *make_body(const struct arguments *arguments)
     return text;
 }
 
-/* A random key makes it safe to send a submission again when its answer was lost. */
-static bool make_key(const char *given, char *header, size_t size)
-{
-    unsigned char bytes[16];
-    if (given != NULL)
-        return snprintf(header, size, "Idempotency-Key: %s", given) < (int)size;
-    if (getrandom(bytes, sizeof bytes, 0) != (ssize_t)sizeof bytes)
-        return false;
-    size_t length = (size_t)snprintf(header, size, "Idempotency-Key: ");
-    for (size_t index = 0; index < sizeof bytes; index++)
-        length += (size_t)snprintf(header + length, size - length, "%02x", bytes[index]);
-    return true;
-}
-
 static void print_submitted(const struct http_reply *reply, const json_t *job)
 {
     (void)printf("%s %s%s\n", json_text(job, "id"), json_text(job, "state"),
@@ -128,10 +93,6 @@ static void print_submitted(const struct http_reply *reply, const json_t *job)
 static int take_answer(const struct connection *connection, const struct http_reply *reply,
                        char **id)
 {
-    if (reply->status / 100 != 2) {
-        problem_print(stderr, reply->status, reply->body, reply->length);
-        return EXIT_REFUSED;
-    }
     json_t *job = json_loadb(reply->body == NULL ? "" : reply->body, reply->length, 0, NULL);
     if (job == NULL) {
         (void)fprintf(stderr, "talus: the answer is not JSON\n");
@@ -154,31 +115,17 @@ static int take_answer(const struct connection *connection, const struct http_re
 static int send_body(struct connection *connection, const struct arguments *arguments,
                      const char *body, char **id)
 {
-    char key[512], problem[256] = "";
+    struct http_reply reply;
     const bool check = arguments_has(arguments, "check");
-    if (!make_key(arguments_value(arguments, "idempotency-key"), key, sizeof key)) {
-        (void)fprintf(stderr, "talus: the idempotency key is too long\n");
-        return EXIT_USAGE;
-    }
-    struct http_request request = {.method = "POST",
-                                   .path = check ? "/v1/forecast" : "/v1/jobs",
-                                   .body = body,
-                                   .headers = {check ? NULL : key}};
-    for (int attempt = 0; attempt < 3; attempt++) {
-        struct http_reply reply;
-        const bool answered =
-            connection_send(connection, &request, &reply, problem, sizeof problem);
-        const bool again = !answered && reply.status == 0 && attempt < 2;
-        const int code = answered ? take_answer(connection, &reply, id) : EXIT_NO_SERVER;
-        http_reply_release(&reply);
-        if (!again) {
-            if (!answered)
-                (void)fprintf(stderr, "talus: %s\n", problem);
-            return code;
-        }
-        (void)nanosleep(&(struct timespec){.tv_nsec = 300000000}, NULL);
-    }
-    return EXIT_NO_SERVER;
+    const struct submit_request request = {.path = check ? "/v1/forecast" : "/v1/jobs",
+                                           .body = body,
+                                           .key = arguments_value(arguments, "idempotency-key"),
+                                           .makes_nothing = check};
+    int code = submit_request_send(connection, &request, &reply);
+    if (code == EXIT_DONE)
+        code = take_answer(connection, &reply, id);
+    http_reply_release(&reply);
+    return code;
 }
 
 static int run(struct connection *connection, const struct arguments *arguments)

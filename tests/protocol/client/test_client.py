@@ -64,7 +64,8 @@ class CommandLine(ClientTest):
         self.expect(self.talus("show", "a", "b"), 2, error="usage: talus show")
         self.expect(self.talus("list", "--colour"), 2, error="colour")
         self.expect(self.talus("list", "--limit", "-3"), 2, error="--limit")
-        self.expect(self.talus("study", "x.json"), 2, error="unsupported")
+        self.expect(self.talus("study", "x.json"), 2, error="unknown action 'x.json'")
+        self.expect(self.talus("study", "show"), 2, error="usage: talus study [OPTIONS] show ID")
         self.expect(self.talus("show", "a", "--server", "ftp://x"), 2, error="ftp://x")
 
     def test_no_server(self):

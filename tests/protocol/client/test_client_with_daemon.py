@@ -59,6 +59,8 @@ class WithDaemon(unittest.TestCase):
         self.assertEqual(result.returncode, 0, result.stderr)
         return json.loads(result.stdout)
 
+
+class Jobs(WithDaemon):
     def write_scene(self, **changes):
         with open(os.path.join(self.folder, "scene.json"), "w", encoding="utf-8") as stream:
             json.dump({**SCENE, **changes}, stream)
