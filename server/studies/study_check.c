@@ -104,7 +104,8 @@ static enum talus_status row_count(struct check *check, const json_t *answer,
 static json_t *question_make(const struct check *check, size_t count)
 {
     json_t *scenes = json_array();
-    json_int_t threads = check->draft->threads < 1 ? 1 : check->draft->threads;
+    const json_int_t given = check->draft->threads;
+    const json_int_t most = given > 0 ? given : (json_int_t)check->service->config->workers;
     for (size_t index = check->next; index < check->next + count; index++) {
         const json_t *set = json_object_get(row_at(check->draft, index), "set");
         if (json_array_append_new(scenes, study_scene(check->draft->scene, set)) != 0) {
@@ -113,8 +114,8 @@ static json_t *question_make(const struct check *check, size_t count)
         }
     }
     return json_pack("{s:s, s:o, s:I, s:i, s:o}", "op", "check_many", "scenes", scenes, "threads",
-                     threads, "stop_after", MISTAKEN_ROWS_MAX, "calibration",
-                     scene_question_calibration(check->service, threads));
+                     most, "stop_after", MISTAKEN_ROWS_MAX, "calibration",
+                     scene_question_calibration(check->service, given));
 }
 
 static enum talus_status answers_take(struct check *check, const json_t *answers,

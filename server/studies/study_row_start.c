@@ -176,9 +176,11 @@ static enum row_start row_ask(struct row_task *task, struct helper *helper, bool
     struct study_run *run = task->run;
     struct talus_error error = {0};
     json_t *scene = study_scene(run->scene, task->settings);
-    json_int_t threads = json_integer_value(json_object_get(run->options, "threads"));
+    const json_t *threads = json_object_get(run->options, "threads");
     json_t *question =
-        scene == NULL ? NULL : scene_question(task->service, scene, threads < 1 ? 1 : threads);
+        scene == NULL ? NULL
+                      : scene_question(task->service, scene,
+                                       threads == NULL ? 1 : (int64_t)json_number_value(threads));
     json_decref(scene);
     *asked = false;
     if (question == NULL)

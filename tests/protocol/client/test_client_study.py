@@ -9,7 +9,7 @@ import unittest
 
 import test_client_with_daemon as base
 
-DESIGN = {"grid": {"parameters": {"h": [0.2, 0.3], "courant": [0.2, 0.4]},
+GRID_OF_FOUR = {"grid": {"parameters": {"h": [0.2, 0.3], "courant": [0.2, 0.4]},
                    "set": {"/bodies/0/box/max/1": "h", "/solver/courant": "courant"}}}
 SCENE = dict(base.SCENE, duration=0.02, solver={"courant": 0.4},
              output={"frames": {"every": 0.02, "fields": ["velocity"]}, "history": {"every": 0.005}})
@@ -17,7 +17,7 @@ SCENE = dict(base.SCENE, duration=0.02, solver={"courant": 0.4},
 
 class Study(base.WithDaemon):
     def write(self, **changes):
-        study = {"name": "falling squares", "scene": SCENE, "design": DESIGN,
+        study = {"name": "falling squares", "scene": SCENE, "design": GRID_OF_FOUR,
                  "metrics": ["steps", "energy_error"], **changes}
         with open(os.path.join(self.folder, "study.json"), "w", encoding="utf-8") as stream:
             json.dump(study, stream)
