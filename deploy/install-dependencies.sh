@@ -8,6 +8,7 @@
 #                    disable --now nginx caddy prometheus`)
 #       --aarch64    the cross compiler and libraries of the preset aarch64 (adds the architecture
 #                    arm64 to dpkg)
+#       --contract   Node.js and npm, for the tests with the label contract
 #       --coverage   gcovr
 set -euo pipefail
 
@@ -29,9 +30,10 @@ for option in "$@"; do
         packages+=(gcc-aarch64-linux-gnu libc6-dev-arm64-cross qemu-user
             libgomp1:arm64 libcmocka-dev:arm64)
         ;;
+    --contract) packages+=(nodejs npm) ;;
     --coverage) packages+=(gcovr) ;;
     *)
-        echo "usage: $0 [--checks] [--aarch64] [--coverage]" >&2
+        echo "usage: $0 [--checks] [--aarch64] [--contract] [--coverage]" >&2
         exit 2
         ;;
     esac

@@ -53,6 +53,8 @@ static const struct json_field result_members[] = {
     MEMBER(TEXT, "file", "name"),
     MEMBER(INTEGER, "bytes", "size"),
     MEMBER(TEXT, "sha256", "of its contents"),
+    MEMBER_SOMETIMES(BOOLEAN, "varies",
+                     "it holds times or names of this run, which a repeat has not"),
     MEMBER_END,
 };
 static const struct json_field result_item = {.kind = FIELD_OBJECT, .fields = result_members};

@@ -341,8 +341,8 @@ class Run:
     def finish(self):
         rows = self.row - 1
         replace(self.path("receipt.json"), json.dumps(
-            {"rows": rows, "build": "fake", "steered": bool(self.steering),
-             "steering": self.steering}).encode())
+            {"metrics": {"rows": rows}, "build": "fake",
+             "steered": bool(self.steering)}).encode())
         text = ",".join(name for name, _ in COLUMNS) + "\n"
         for index in range(rows + 1):
             text += ",".join(repr(v) for v in row_values(index, self.do["rows"], self.do["spike"])) + "\n"

@@ -166,7 +166,7 @@ class Patch(DaemonTest):
         self.assertEqual(after["steering"], {"end_time": 0.05})
         done = self.client.finish(job)
         self.assertEqual((done["state"], done["steered"]), ("succeeded", True))
-        self.assertEqual(done["receipt"]["rows"], 30)
+        self.assertEqual(done["receipt"]["metrics"]["rows"], 30)
         self.assertTrue(done["receipt"]["steered"])
 
 
@@ -200,7 +200,7 @@ class Kills(unittest.TestCase):
         for job in jobs:
             done = self.client.finish(job)
             self.assertEqual((done["state"], len(done["attempts"])), ("succeeded", 1))
-            self.assertEqual(done["receipt"]["rows"], 60)
+            self.assertEqual(done["receipt"]["metrics"]["rows"], 60)
             self.assertEqual(self.frames(job), 2)
 
     def test_worker_killed_before_it_hears(self):
@@ -212,7 +212,7 @@ class Kills(unittest.TestCase):
         os.kill(pid, signal.SIGKILL)
         done = self.client.finish(job)
         self.assertEqual((done["state"], len(done["attempts"])), ("succeeded", 2))
-        self.assertEqual(done["receipt"]["rows"], 60)
+        self.assertEqual(done["receipt"]["metrics"]["rows"], 60)
         self.assertEqual(self.frames(job), 2)
 
     def test_both_killed_and_the_file_is_not_there(self):
@@ -227,7 +227,7 @@ class Kills(unittest.TestCase):
         self.daemon.start()
         self.client.close()
         done = self.client.finish(job)
-        self.assertEqual((done["state"], done["receipt"]["rows"]), ("succeeded", 60))
+        self.assertEqual((done["state"], done["receipt"]["metrics"]["rows"]), ("succeeded", 60))
 
     def test_limits_of_an_adopted_worker(self):
         job = self.running(hang=True, seconds=0.1)
