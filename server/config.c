@@ -155,18 +155,23 @@ static enum talus_status worker_find(struct config *config, struct talus_error *
     return text_replace(&config->worker_program, "talus-worker") ? TALUS_OK : out_of_memory(error);
 }
 
+/* False without memory. */
+static bool default_text(char **text, const char *fallback)
+{
+    return *text != NULL || fallback == NULL || text_replace(text, fallback);
+}
+
+static void default_number(double *number, double fallback)
+{
+    if (isnan(*number))
+        *number = fallback;
+}
+
 static bool defaults_fill(struct config *config)
 {
     bool good = true;
-#define CONFIG_TEXT(key, fallback, meaning)                                                        \
-    {                                                                                              \
-        const char *text = (fallback);                                                             \
-        if (config->key == NULL && text != NULL)                                                   \
-            good = good && text_replace(&config->key, text);                                       \
-    }
-#define CONFIG_NUMBER(key, fallback, low, high, meaning)                                           \
-    if (isnan(config->key))                                                                        \
-        config->key = (fallback);
+#define CONFIG_TEXT(key, fallback, meaning) good = default_text(&config->key, fallback) && good;
+#define CONFIG_NUMBER(key, fallback, low, high, meaning) default_number(&config->key, fallback);
 #define CONFIG_FLAG(key, meaning)
 #define CONFIG_LIST(key, meaning)
 #include "config.def"

@@ -109,7 +109,7 @@ static const char *failure_text(enum operation operation, double right)
 bool expression_evaluate(const struct expression *expression, const double *values, double *result,
                          struct expression_mistake *mistake)
 {
-    double stack[EXPRESSION_LENGTH_MAX];
+    double stack[EXPRESSION_LENGTH_MAX] = {0};
     size_t height = 0;
     for (size_t index = 0; index < expression->count; index++) {
         const struct instruction *instruction = &expression->program[index];

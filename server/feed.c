@@ -32,7 +32,9 @@ struct feed {
     bool begun;   /* `last` is known */
 };
 
-static void ring_add(struct ring *ring, int64_t row, char *text)
+/* Takes the text over. */
+static void ring_add(struct ring *ring, int64_t row,
+                     char *text) /* NOLINT(readability-non-const-parameter) */
 {
     struct entry *entry = &ring->entries[ring->count++ % ring->size];
     free(entry->text);

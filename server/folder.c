@@ -99,7 +99,7 @@ enum talus_status folder_replace(const char *folder, const char *name, const cha
         path == NULL || aside == NULL
             ? talus_error_set(error, TALUS_MEMORY, "memory", "", "out of memory")
             : TALUS_OK;
-    if (status == TALUS_OK && unlink(aside) != 0 && errno != ENOENT)
+    if (aside != NULL && status == TALUS_OK && unlink(aside) != 0 && errno != ENOENT)
         status = folder_error(error, "remove", aside);
     if (status == TALUS_OK)
         status = folder_write(folder, aside_name, data, length, error);

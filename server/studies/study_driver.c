@@ -79,8 +79,8 @@ static void run_drop(struct study_run **link)
     study_run_destroy(run);
 }
 
-/* Reads a study anew; false if it does not run (any more), and then it is not in the list. */
-static bool run_read(struct study_driver *driver, const char *id)
+/* Reads a study anew; NULL if it does not run (any more), and then it is not in the list. */
+static struct study_run *run_read(struct study_driver *driver, const char *id)
 {
     struct talus_error error = {0};
     struct study study = {0};
@@ -88,23 +88,23 @@ static bool run_read(struct study_driver *driver, const char *id)
     enum talus_status status = study_store_read(driver->service->store, id, false, &study, &error);
     if (status != TALUS_OK && status != TALUS_INVALID) {
         driver_complain(driver, id, &error);
-        return false;
+        return NULL;
     }
     if (status != TALUS_OK || study.state != STUDY_RUNNING) {
         study_release(&study);
         if (*link != NULL)
             run_drop(link);
-        return false;
+        return NULL;
     }
     if (*link == NULL)
         *link = study_run_create();
     if (*link == NULL) {
         study_release(&study);
-        return false;
+        return NULL;
     }
     study_release(&(*link)->study);
     (*link)->study = study;
-    return true;
+    return *link;
 }
 
 /* A study has changed: those who wait for it are told, and what is due is done. */
@@ -113,9 +113,9 @@ static void run_look(struct study_driver *driver, const char *id)
     struct talus_error error = {0};
     enum talus_status status = TALUS_OK;
     waits_notify(driver->service->waits, id);
-    if (!run_read(driver, id))
+    struct study_run *run = run_read(driver, id);
+    if (run == NULL)
         return;
-    struct study_run *run = *run_link(driver, id);
     if (run->study.cancel_requested && study_active_count(&run->study) > 0)
         status = study_run_stop(run, driver->service, &error);
     else if (run->study.counts[ROW_WAITING] == 0 && study_active_count(&run->study) == 0)

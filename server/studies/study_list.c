@@ -157,17 +157,17 @@ enum talus_status study_store_transitions(struct store *store, const char *id, i
 }
 
 struct changes_visitor {
-    int64_t *after;
+    int64_t after;
     bool (*visit)(const char *id, void *context);
     void *context;
 };
 
 static bool changes_visit(sqlite3_stmt *statement, void *context)
 {
-    const struct changes_visitor *visitor = context;
+    struct changes_visitor *visitor = context;
     int64_t last = sqlite3_column_int64(statement, 1);
-    if (last > *visitor->after)
-        *visitor->after = last;
+    if (last > visitor->after)
+        visitor->after = last;
     return visitor->visit(text_at(statement, 0), visitor->context);
 }
 
@@ -175,7 +175,7 @@ enum talus_status study_store_changes(struct store *store, int64_t *after,
                                       bool (*visit)(const char *id, void *context), void *context,
                                       struct talus_error *error)
 {
-    struct changes_visitor visitor = {.after = after, .visit = visit, .context = context};
+    struct changes_visitor visitor = {.after = *after, .visit = visit, .context = context};
     (void)pthread_mutex_lock(&store->reader_mutex);
     sqlite3_stmt *statement = store_prepare(
         store->reader,
@@ -185,6 +185,7 @@ enum talus_status study_store_changes(struct store *store, int64_t *after,
     enum talus_status status =
         statement_visit(store->reader, statement, changes_visit, &visitor, error);
     (void)pthread_mutex_unlock(&store->reader_mutex);
+    *after = visitor.after;
     return status;
 }
 

@@ -12,11 +12,13 @@ const char study_select_whole[] = "SELECT id"
 #include "row_states.def"
 #include "study_columns.def"
                                   " FROM studies";
+#undef ROW_STATE
 static const char insert_begin[] = "INSERT INTO studies (id"
 #include "study_columns.def"
                                    ") VALUES (?";
 #undef STUDY_LONG_TEXT
 #define STUDY_LONG_TEXT(name) ", NULL"
+#define ROW_STATE(ENUM, name) ", " #name
 const char study_select_light[] = "SELECT id"
 #include "row_states.def"
 #include "study_columns.def"

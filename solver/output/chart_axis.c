@@ -65,11 +65,12 @@ static void shorten_exponent(char *text)
     if (exponent == NULL)
         return;
     if (strtod(text, NULL) == 0.0) {
-        (void)strcpy(text, "0");
+        text[0] = '0';
+        text[1] = '\0';
         return;
     }
-    const int power = atoi(exponent + 1);
-    (void)snprintf(exponent, 8, "e%d", power);
+    const long power = strtol(exponent + 1, NULL, 10);
+    (void)snprintf(exponent, 8, "e%ld", power);
 }
 
 static size_t linear_ticks(const struct chart_scale *scale, int wanted,

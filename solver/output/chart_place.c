@@ -129,10 +129,11 @@ void chart_legend_draw(const struct chart_legend *legend, cairo_t *context, doub
         legend_front(legend, context, left, y);
         y += step;
     }
-    for (; index < legend->words->count; index++, y += step) {
+    for (; index < legend->words->count; index++) {
         if (y + step > bottom && index + 1 < legend->words->count)
             break;
         legend_entry(legend, context, left, y, index);
+        y += step;
     }
     if (index < legend->words->count) {
         char text[48];

@@ -118,8 +118,10 @@ static uint8_t *assemble(const struct slice *slice, uint64_t frame, size_t *leng
         *length = 4 + padded + slice->length;
         put_word(whole, (uint32_t)padded);
         memset(whole + 4, ' ', padded);
-        memcpy(whole + 4, text, used);
-        memcpy(whole + 4 + padded, slice->data, slice->length);
+        for (size_t index = 0; index < used; index++)
+            whole[4 + index] = (uint8_t)text[index];
+        if (slice->data != NULL)
+            memcpy(whole + 4 + padded, slice->data, slice->length);
     }
     free(text);
     json_decref(header);

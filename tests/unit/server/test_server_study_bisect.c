@@ -3,6 +3,8 @@
 #include "server_fixture.h"
 #include "study_bisect.h"
 
+#include <stdlib.h>
+
 #include <math.h>
 #include <string.h>
 
@@ -181,9 +183,8 @@ static void test_recovery(void **state)
             break;
         for (size_t index = 0; index < step.run_count; index++) {
             char text[32];
-            double value;
             (void)snprintf(text, sizeof text, "%.15g", step.run[index]);
-            assert_int_equal(sscanf(text, "%lf", &value), 1);
+            double value = strtod(text, NULL);
             memmove(trials + 1, trials, count * sizeof *trials);
             trials[0] = (struct bisect_trial){value, value < 0.4321};
             count++;

@@ -109,7 +109,7 @@ static void test_triangles(void **state)
             vertices[index].y = random_share(&random);
             if (lattice == 1) { /* 14 x 14 inner points: all on circles with others */
                 vertices[index].x = (1.0 + (double)((index - 4) % 14)) / 15.0;
-                vertices[index].y = (1.0 + (double)((index - 4) / 14)) / 16.0;
+                vertices[index].y = (1.0 + floor((double)(index - 4) / 14.0)) / 16.0;
             }
         }
         double area = 0.0;
