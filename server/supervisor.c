@@ -539,6 +539,7 @@ void supervisor_destroy(struct supervisor *supervisor)
         (void)pthread_join(supervisor->thread, NULL);
     while (supervisor->first != NULL)
         attempt_unlink(supervisor, supervisor->first);
+    fair_share_release(&supervisor->share);
     (void)close(supervisor->wake);
     (void)close(supervisor->ends);
     (void)pthread_mutex_destroy(&supervisor->mutex);
