@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* GET /metrics: what there is now, and what was counted. */
+#include "calibration.h"
 #include "events.h"
 #include "moment.h"
 #include "request.h"
@@ -77,6 +78,22 @@ static void service_print(struct text *text, struct service *service)
                talus_build());
 }
 
+/* How good forecasts were: of jobs that ran as they were forecast. */
+static void forecasts_print(struct text *text, struct calibration *calibration)
+{
+    struct calibration_summary quality;
+    calibration_summarise(calibration, &quality);
+    number_print(text, "talus_forecast_judged_total", "counter", (double)quality.judged,
+                 "Jobs whose wall time was compared with its forecast.");
+    number_print(text, "talus_forecast_inside_total", "counter", (double)quality.inside,
+                 "Of these, those that ended inside the interval.");
+    if (quality.judged > 0)
+        number_print(text, "talus_forecast_inside_ratio", "gauge", quality.recent,
+                     "Share of the last hundred or so that ended inside.");
+    number_print(text, "talus_forecast_statistics", "gauge", (double)quality.names,
+                 "Methods and classes of which something has been learned.");
+}
+
 const struct operation operation_metrics = {
     .summary = "What the daemon counts, for Prometheus",
     .responses =
@@ -91,6 +108,7 @@ enum handled handle_metrics(struct request *request)
     struct text text = {0};
     jobs_print(&text, service->store);
     service_print(&text, service);
+    forecasts_print(&text, service->calibration);
     metrics_print(service->metrics, &text);
     reply_text(&request->reply, MHD_HTTP_OK, "text/plain; version=0.0.4; charset=utf-8", &text);
     reply_header(&request->reply, MHD_HTTP_HEADER_CACHE_CONTROL, "no-store");

@@ -141,6 +141,12 @@ class Quality(DaemonTest):
         if len(runs) <= 100:
             self.assertAlmostEqual(quality["inside_ratio"], quality["inside"] / len(runs))
 
+        lines = self.client.get("/metrics").body.decode().splitlines()
+        self.assertIn(f"talus_forecast_judged_total {len(runs)}", lines)
+        self.assertIn(f"talus_forecast_inside_total {quality['inside']}", lines)
+        ratio = [line for line in lines if line.startswith("talus_forecast_inside_ratio ")]
+        self.assertAlmostEqual(float(ratio[0].split()[1]), quality["inside_ratio"])
+
     def check_amounts(self, run):
         """Steps, memory and disk do not depend on who else uses the machine."""
         ranges = run.forecast["intervals"]
