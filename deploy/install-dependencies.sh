@@ -30,7 +30,12 @@ for option in "$@"; do
         packages+=(gcc-aarch64-linux-gnu libc6-dev-arm64-cross qemu-user
             libgomp1:arm64 libcmocka-dev:arm64)
         ;;
-    --contract) packages+=(nodejs npm) ;;
+    --contract)
+        # Node.js from elsewhere brings an npm of its own, which Debian's would exclude.
+        if ! command -v npm >/dev/null; then
+            packages+=(nodejs npm)
+        fi
+        ;;
     --coverage) packages+=(gcovr) ;;
     *)
         echo "usage: $0 [--checks] [--aarch64] [--contract] [--coverage]" >&2
