@@ -6,6 +6,8 @@
 
 #include "json_field.h"
 
+/* low, expected, high [s] */
+extern const struct json_field schema_seconds_interval[];
 extern const struct json_field schema_any_object;
 extern const struct json_field schema_forecast;
 extern const struct json_field schema_forecast_answer;

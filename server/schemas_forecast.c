@@ -26,7 +26,7 @@ static const struct json_field ranges_members[] = {
     MEMBER_END,
 };
 
-static const struct json_field interval_members[] = {
+const struct json_field schema_seconds_interval[] = {
     MEMBER(NUMBER, "low", "[s]"),
     MEMBER(NUMBER, "expected", "[s]"),
     MEMBER(NUMBER, "high", "[s]"),
@@ -59,7 +59,7 @@ static const struct json_field forecast_members[] = {
     MEMBER_SOMETIMES(INTEGER, "threads", "that the time is expected for"),
     {.key = "wall_seconds",
      .kind = FIELD_OBJECT,
-     .fields = interval_members,
+     .fields = schema_seconds_interval,
      .meaning = "expected, with an interval: 95 of 100 jobs should end inside"},
     MEMBER_SOMETIMES(NUMBER, "cpu_seconds", "expected processor time of all threads"),
     {.key = "intervals",

@@ -9,6 +9,34 @@
 #include <stdlib.h>
 #include <string.h>
 
+static const struct json_field after_or_latest[] = {
+    {.key = "after",
+     .kind = FIELD_TEXT,
+     .optional = true,
+     .meaning = "id of the event behind which to go on; 'latest': only what happens from now on"},
+    OPERATION_END};
+
+static const struct json_field last_event_headers[] = {{.key = "Last-Event-ID",
+                                                        .kind = FIELD_TEXT,
+                                                        .optional = true,
+                                                        .meaning = "the same, as browsers send it"},
+                                                       OPERATION_END};
+
+/* The id behind which the reader wants to go on, or NULL. */
+static const char *event_id_given(const struct request *request)
+{
+    const char *id = request_header(request, "Last-Event-ID");
+    return id != NULL ? id : target_query(&request->target, "after");
+}
+
+static void refuse_event_id(struct request *request, const char *detail)
+{
+    reply_problem(&request->reply, MHD_HTTP_UNPROCESSABLE_CONTENT, "event_id", request->raw, NULL,
+                  "%s", detail);
+}
+
+static const char no_event_id[] = "this is not the id of an event";
+
 const struct operation operation_job_events = {
     .summary = "What happens to a job, from its start, as Server-Sent Events",
     .path = operation_job_path,
@@ -17,11 +45,7 @@ const struct operation operation_job_events = {
                                           .optional = true,
                                           .meaning = "id of the event behind which to go on"},
                                          OPERATION_END},
-    .headers = (const struct json_field[]){{.key = "Last-Event-ID",
-                                            .kind = FIELD_TEXT,
-                                            .optional = true,
-                                            .meaning = "the same, as browsers send it"},
-                                           OPERATION_END},
+    .headers = last_event_headers,
     .responses =
         (const struct response[]){
             {.status = 200,
@@ -45,12 +69,9 @@ enum handled handle_job_events(struct request *request)
     struct event_source source = {0};
     struct event_stream *stream = &source.stream;
     struct event_id after = {0};
-    const char *id = request_header(request, "Last-Event-ID");
-    if (id == NULL)
-        id = target_query(&request->target, "after");
+    const char *id = event_id_given(request);
     if (id != NULL && id[0] != '\0' && !event_id_parse(id, &after)) {
-        reply_problem(&request->reply, MHD_HTTP_UNPROCESSABLE_CONTENT, "event_id", request->raw,
-                      NULL, "this is not the id of an event");
+        refuse_event_id(request, no_event_id);
         return HANDLED;
     }
     char *folder = request_folder(request);
@@ -58,8 +79,7 @@ enum handled handle_job_events(struct request *request)
         return HANDLED;
     if (event_stream_open(stream, folder, after, &error) != TALUS_OK) {
         if (error.status == TALUS_INVALID)
-            reply_problem(&request->reply, MHD_HTTP_UNPROCESSABLE_CONTENT, "event_id", request->raw,
-                          NULL, "%s", error.text);
+            refuse_event_id(request, error.text);
         else
             reply_error(&request->reply, request->raw, &error);
     } else {
@@ -74,28 +94,6 @@ enum handled handle_job_events(struct request *request)
     free(folder);
     return HANDLED;
 }
-
-const struct operation operation_events = {
-    .summary = "What happens to all jobs and studies, as Server-Sent Events",
-    .query = (const struct json_field[]){{.key = "after",
-                                          .kind = FIELD_TEXT,
-                                          .optional = true,
-                                          .meaning = "id of the event behind which to go on; "
-                                                     "'latest': only what happens from now on"},
-                                         OPERATION_END},
-    .headers = (const struct json_field[]){{.key = "Last-Event-ID",
-                                            .kind = FIELD_TEXT,
-                                            .optional = true,
-                                            .meaning = "the same, as browsers send it"},
-                                           OPERATION_END},
-    .responses =
-        (const struct response[]){
-            {.status = 200,
-             .type = "text/event-stream",
-             .meaning = "events state and done of jobs, study of studies, with growing ids; "
-                        "progress of running jobs without one, which is not told again; gap"},
-            RESPONSE_END},
-};
 
 /* "ROW" or "latest"; false for anything else. */
 static bool row_parse(struct feed *feed, const char *text, int64_t *row)
@@ -117,17 +115,8 @@ static bool row_parse(struct feed *feed, const char *text, int64_t *row)
 const struct operation operation_study_events = {
     .summary = "What happens to a study and its rows, from its start, as Server-Sent Events",
     .path = operation_study_path,
-    .query = (const struct json_field[]){{.key = "after",
-                                          .kind = FIELD_TEXT,
-                                          .optional = true,
-                                          .meaning = "id of the event behind which to go on; "
-                                                     "'latest': only what happens from now on"},
-                                         OPERATION_END},
-    .headers = (const struct json_field[]){{.key = "Last-Event-ID",
-                                            .kind = FIELD_TEXT,
-                                            .optional = true,
-                                            .meaning = "the same, as browsers send it"},
-                                           OPERATION_END},
+    .query = after_or_latest,
+    .headers = last_event_headers,
     .responses =
         (const struct response[]){
             {.status = 200,
@@ -144,12 +133,9 @@ enum handled handle_study_events(struct request *request)
     struct study_stream *stream = &source.study;
     struct study study;
     int64_t row = 0;
-    const char *id = request_header(request, "Last-Event-ID");
-    if (id == NULL)
-        id = target_query(&request->target, "after");
+    const char *id = event_id_given(request);
     if (!row_parse(events_feed(request->service->events), id, &row)) {
-        reply_problem(&request->reply, MHD_HTTP_UNPROCESSABLE_CONTENT, "event_id", request->raw,
-                      NULL, "this is not the id of an event");
+        refuse_event_id(request, no_event_id);
         return HANDLED;
     }
     if (!study_request_read(request, false, &study))
@@ -166,17 +152,27 @@ enum handled handle_study_events(struct request *request)
     return HANDLED;
 }
 
+const struct operation operation_events = {
+    .summary = "What happens to all jobs and studies, as Server-Sent Events",
+    .query = after_or_latest,
+    .headers = last_event_headers,
+    .responses =
+        (const struct response[]){
+            {.status = 200,
+             .type = "text/event-stream",
+             .meaning = "events state and done of jobs, study of studies, with growing ids; "
+                        "progress of running jobs without one, which is not told again; gap"},
+            RESPONSE_END},
+};
+
 enum handled handle_events(struct request *request)
 {
     struct feed *feed = events_feed(request->service->events);
     struct event_source source = {.kind = SOURCE_ALL};
     int64_t row = 0;
-    const char *id = request_header(request, "Last-Event-ID");
-    if (id == NULL)
-        id = target_query(&request->target, "after");
+    const char *id = event_id_given(request);
     if (!row_parse(feed, id, &row)) {
-        reply_problem(&request->reply, MHD_HTTP_UNPROCESSABLE_CONTENT, "event_id", request->raw,
-                      NULL, "this is not the id of an event");
+        refuse_event_id(request, no_event_id);
         return HANDLED;
     }
     feed_reader_open(&source.reader, feed, row);

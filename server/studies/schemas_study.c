@@ -121,13 +121,6 @@ static const struct json_field progress_members[] = {
     MEMBER_END,
 };
 
-static const struct json_field interval_members[] = {
-    MEMBER(NUMBER, "low", "[s]"),
-    MEMBER(NUMBER, "expected", "[s]"),
-    MEMBER(NUMBER, "high", "[s]"),
-    MEMBER_END,
-};
-
 static const struct json_field forecast_members[] = {
     MEMBER(INTEGER, "rows", "jobs; for a bisection, at most"),
     MEMBER(INTEGER, "reused", "rows whose result is there"),
@@ -136,11 +129,11 @@ static const struct json_field forecast_members[] = {
     MEMBER(NUMBER, "disk_bytes", "of all jobs to be run"),
     {.key = "wall_seconds",
      .kind = FIELD_OBJECT,
-     .fields = interval_members,
+     .fields = schema_seconds_interval,
      .meaning = "of all jobs to be run, one after another"},
     {.key = "elapsed_seconds",
      .kind = FIELD_OBJECT,
-     .fields = interval_members,
+     .fields = schema_seconds_interval,
      .meaning = "with as many at once as this service runs"},
     MEMBER_END,
 };

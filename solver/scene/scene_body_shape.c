@@ -148,7 +148,7 @@ static void read_volumes(struct scene_reader *reader, const struct scene_path *p
             return;
         if (index < count)
             body->point_volumes[index] = volume;
-        if (json_array_append_new(list, json_real(body->point_volumes[index])) != 0)
+        if (json_array_append_new(list, json_real(volume)) != 0)
             reader->out_of_memory = true;
     }
 }

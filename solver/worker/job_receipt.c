@@ -84,14 +84,16 @@ static json_t *make_receipt(const struct job_run *run, const char *outcome, json
     (void)snprintf(state_hash, sizeof state_hash, "%016llx",
                    (unsigned long long)talus_simulation_state_hash(run->simulation));
     event_time(at);
-    return json_pack("{s:s, s:s, s:s, s:s, s:s, s:s, s:i, s:i, s:b, s:O*, s:s, s:s, s:s, s:O}",
-                     "outcome", outcome, "scene_hash", run->scene_hash, "build", build, "compiler",
-                     compiler == NULL ? "unknown" : compiler + 1, "isa", talus_simulation_isa(),
-                     "precision",
-                     talus_simulation_precision() == TALUS_PRECISION_SINGLE ? "single" : "double",
-                     "threads", run->options->threads, "attempt", run->events.attempt, "steered",
-                     run->steering != NULL, "steering", run->steering, "command", command,
-                     "state_hash", state_hash, "finished_at", at, "metrics", metrics);
+    json_t *receipt = json_pack(
+        "{s:s, s:s, s:s, s:s, s:s, s:s, s:i, s:i, s:b, s:O*, s:s, s:s, s:s, s:O}", "outcome",
+        outcome, "scene_hash", run->scene_hash, "build", build, "compiler",
+        compiler == NULL ? "unknown" : compiler + 1, "isa", talus_simulation_isa(), "precision",
+        talus_simulation_precision() == TALUS_PRECISION_SINGLE ? "single" : "double", "threads",
+        run->options->threads, "attempt", run->events.attempt, "steered", run->steering != NULL,
+        "steering", run->steering, "command", command, "state_hash", state_hash, "finished_at", at,
+        "metrics", metrics);
+    free(command);
+    return receipt;
 }
 
 static enum talus_status write_text(const struct job_run *run, const json_t *receipt,

@@ -236,7 +236,7 @@ class Life(StudyTest):
         self.assert_problem(self.client.delete(f"/v1/studies/{study['id']}"), 409)
         study = self.end(study["id"])
         self.assertEqual(study["state"], "cancelled")
-        self.assertEqual(study["counts"]["cancelled"], 6)
+        self.assertEqual(study["counts"]["cancelled"], 6, self.results(study["id"]))
         self.assertEqual(self.client.post(f"/v1/studies/{study['id']}/cancel").status, 200)
         for job in self.client.get(f"/v1/jobs?study={study['id']}").json()["jobs"]:
             self.assertEqual(job["state"], "cancelled")
