@@ -25,8 +25,9 @@ struct study_driver {
     pthread_t thread;
     bool started;
     atomic_bool stopping;
-    int wake;     /* eventfd */
-    int64_t seen; /* transitions up to this one are known */
+    atomic_bool wishes; /* something is wanted of a study that no transition tells */
+    int wake;           /* eventfd */
+    int64_t seen;       /* transitions up to this one are known */
     struct study_run *first;
     struct helper helper;
     double retry_at; /* monotonic, 0: nothing is to be tried again */
@@ -55,6 +56,13 @@ void study_driver_wake(struct study_driver *driver)
     const uint64_t one = 1;
     if (driver != NULL && write(driver->wake, &one, sizeof one) < 0 && errno != EAGAIN)
         (void)fprintf(stderr, "talusd: cannot wake the studies\n");
+}
+
+void study_driver_wish(struct study_driver *driver)
+{
+    if (driver != NULL)
+        atomic_store(&driver->wishes, true);
+    study_driver_wake(driver);
 }
 
 static void driver_complain(struct study_driver *driver, const char *id,
@@ -229,10 +237,11 @@ static void *driver_main(void *argument)
     all_look(driver);
     while (!atomic_load(&driver->stopping)) {
         bool again = driver->retry_at > 0 && moment_monotonic() >= driver->retry_at;
-        if (again) {
+        bool wished = atomic_exchange(&driver->wishes, false);
+        if (again)
             driver->retry_at = 0;
+        if (again || wished)
             all_look(driver);
-        }
         changes_look(driver);
         places_fill(driver);
         driver_wait(driver);

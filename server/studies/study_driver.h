@@ -19,5 +19,7 @@ TALUS_MUST_CHECK enum talus_status study_driver_start(struct study_driver *drive
 void study_driver_destroy(struct study_driver *driver);
 /* Looks at the studies now. NULL is fine. */
 void study_driver_wake(struct study_driver *driver);
+/* The same when nothing has changed in the rows, as when jobs are to be stopped. */
+void study_driver_wish(struct study_driver *driver);
 
 #endif

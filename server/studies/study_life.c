@@ -89,8 +89,10 @@ enum talus_status study_cancel(struct service *service, const char *id, int64_t 
     struct guarded guarded = {.revision = revision};
     struct study_change change = {.apply = cancel_apply, .context = &guarded};
     enum talus_status status = study_store_change(service->store, id, &change, result, error);
-    if (status == TALUS_OK)
+    if (status == TALUS_OK) {
         study_changed(service, id);
+        study_driver_wish(service->studies);
+    }
     return status;
 }
 

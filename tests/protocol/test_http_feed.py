@@ -5,7 +5,7 @@ import resource
 import time
 import unittest
 
-from sse_reader import Stream
+from sse_reader import Stream, read_all
 from talus_harness import Daemon, DaemonTest, PATIENCE, wait_for
 
 
@@ -180,7 +180,11 @@ class Watchers(unittest.TestCase):
             while {e.data["job"] for e in first + rest if e.name == "done"} != set(jobs):
                 rest += until(events, lambda event: event.name == "done")
         for job in jobs:
-            self.assertEqual(states(first + rest, job), ["queued", "running", "succeeded"])
+            # A kill between the start of an attempt and its worker loses the attempt, and says so.
+            own = [event.data["state"] for event in read_all(self.daemon.port, f"/v1/jobs/{job}/events")
+                   if event.name == "state"]
+            self.assertEqual(states(first + rest, job), own)
+            self.assertEqual(own[:2] + own[-1:], ["queued", "running", "succeeded"])
 
 
 if __name__ == "__main__":

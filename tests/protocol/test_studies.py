@@ -4,7 +4,7 @@ import csv
 import io
 import unittest
 
-from talus_harness import DaemonTest, PATIENCE, fake_scene
+from talus_harness import DaemonTest, PATIENCE, fake_scene, wait_for
 
 
 def study_scene(directive=None, **changes):
@@ -225,10 +225,11 @@ class Life(StudyTest):
         self.assert_problem(self.client.get("/v1/studies?cursor=x"), 422)
 
     def test_cancel(self):
-        body = study_body(GRID, scene=study_scene({"seconds": 30, "term_delay": 0.3}))
+        body = study_body(GRID, scene=study_scene({"seconds": 30, "term_delay": 2}))
         study = self.submit(body)
-        while self.study(study["id"])["counts"]["running"] == 0:
-            pass
+        wait_for(lambda: self.study(study["id"])["counts"]["running"] == 2, what="two running jobs")
+        # All other rows are jobs already: nothing but the wish itself tells the driver.
+        wait_for(lambda: self.study(study["id"])["counts"]["queued"] == 4, what="four queued jobs")
         reply = self.client.post(f"/v1/studies/{study['id']}/cancel")
         self.assertEqual(reply.status, 200, reply)
         self.assertTrue(reply.json()["cancel_requested"])
