@@ -8,6 +8,26 @@
 #include <stdio.h>
 #include <string.h>
 
+enum { WAIT_SECONDS_MAX = 60 };
+
+const struct json_field revision_wait_query[] = {
+    {.key = "wait",
+     .kind = FIELD_NUMBER,
+     .optional = true,
+     .minimum = 0,
+     .maximum = WAIT_SECONDS_MAX,
+     .meaning = "seconds to wait at most: with If-None-Match until the revision differs, without "
+                "it until the end"},
+    OPERATION_END};
+const struct json_field revision_known_headers[] = {
+    {.key = "If-None-Match", .optional = true, .meaning = "ETag that is known already"},
+    OPERATION_END};
+const char *const revision_headers[] = {"ETag", NULL};
+const struct json_field revision_match_headers[] = {
+    {.key = "If-Match", .optional = true, .meaning = "only while this is its ETag, its revision"},
+    OPERATION_END};
+const unsigned int revision_problems[] = {409, 412, 0};
+
 void revision_etag(int64_t revision, char etag[REVISION_ETAG_SIZE])
 {
     (void)snprintf(etag, REVISION_ETAG_SIZE, "\"%" PRId64 "\"", revision);

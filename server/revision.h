@@ -6,7 +6,19 @@
 
 #include "request.h"
 
-enum { REVISION_ETAG_SIZE = 32, REVISION_WAIT_SECONDS_MAX = 60 };
+enum { REVISION_ETAG_SIZE = 32 };
+
+/* For the tables of operations. Of one that reads: its query, its headers, those of its answer, and
+ * the answer to a reader that has it already. */
+extern const struct json_field revision_wait_query[], revision_known_headers[];
+extern const char *const revision_headers[];
+#define REVISION_UNCHANGED                                                                         \
+    {                                                                                              \
+        .status = 304, .headers = revision_headers, .meaning = "it has the ETag that is known"     \
+    }
+/* Of one that changes: its headers, and the problems that it can have. */
+extern const struct json_field revision_match_headers[];
+extern const unsigned int revision_problems[];
 
 void revision_etag(int64_t revision, char etag[REVISION_ETAG_SIZE]);
 /* The revision that If-Match asks for, -1 for any, of a thing that is at one. False: it is not at

@@ -16,39 +16,19 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const char *const job_headers[] = {"ETag", NULL};
-
-/* Of calls that change a job. */
-static const struct json_field match_headers[] = {
-    {.key = "If-Match",
-     .optional = true,
-     .meaning = "only while the job has this ETag, its revision"},
-    OPERATION_END};
-
 const struct operation operation_job = {
     .summary = "A job as it is",
     .path = operation_job_path,
-    .query = (const struct json_field[]){{.key = "wait",
-                                          .kind = FIELD_NUMBER,
-                                          .optional = true,
-                                          .minimum = 0,
-                                          .maximum = REVISION_WAIT_SECONDS_MAX,
-                                          .meaning = "seconds to wait at most: with If-None-Match "
-                                                     "until the revision differs, without it "
-                                                     "until the job is final"},
-                                         OPERATION_END},
-    .headers =
-        (const struct json_field[]){
-            {.key = "If-None-Match", .optional = true, .meaning = "ETag that is known already"},
-            OPERATION_END},
+    .query = revision_wait_query,
+    .headers = revision_known_headers,
     .responses =
         (const struct response[]){
             {.status = 200,
              .type = "application/json",
              .schema = &schema_job,
-             .headers = job_headers,
+             .headers = revision_headers,
              .meaning = "the job; its ETag changes with everything but progress"},
-            {.status = 304, .headers = job_headers, .meaning = "it has the ETag that is known"},
+            REVISION_UNCHANGED,
             RESPONSE_END},
 };
 
@@ -94,17 +74,16 @@ job_control(struct request *request,
 static const struct response job_response[] = {{.status = 200,
                                                 .type = "application/json",
                                                 .schema = &schema_job,
-                                                .headers = job_headers,
+                                                .headers = revision_headers,
                                                 .meaning = "the job as it is now"},
                                                RESPONSE_END};
-static const unsigned int control_problems[] = {409, 412, 0};
 
 const struct operation operation_job_cancel = {
     .summary = "Cancels a job: a queued one at once, a running one as soon as its processes end",
     .path = operation_job_path,
-    .headers = match_headers,
+    .headers = revision_match_headers,
     .responses = job_response,
-    .problems = control_problems,
+    .problems = revision_problems,
 };
 
 enum handled handle_job_cancel(struct request *request)
@@ -115,9 +94,9 @@ enum handled handle_job_cancel(struct request *request)
 const struct operation operation_job_resume = {
     .summary = "Lets a failed or cancelled job go on from its last checkpoint, as a new attempt",
     .path = operation_job_path,
-    .headers = match_headers,
+    .headers = revision_match_headers,
     .responses = job_response,
-    .problems = control_problems,
+    .problems = revision_problems,
 };
 
 enum handled handle_job_resume(struct request *request)
@@ -128,9 +107,9 @@ enum handled handle_job_resume(struct request *request)
 const struct operation operation_job_delete = {
     .summary = "Deletes a finished job and all its files",
     .path = operation_job_path,
-    .headers = match_headers,
+    .headers = revision_match_headers,
     .responses = (const struct response[]){{.status = 204, .meaning = "it is gone"}, RESPONSE_END},
-    .problems = control_problems,
+    .problems = revision_problems,
 };
 
 enum handled handle_job_delete(struct request *request)
@@ -170,10 +149,10 @@ static void job_change(struct request *request, const json_t *body, int64_t revi
 const struct operation operation_job_patch = {
     .summary = "Changes priority, labels and limits of a job, and steers a running one",
     .path = operation_job_path,
-    .headers = match_headers,
+    .headers = revision_match_headers,
     .body = &schema_job_patch,
     .responses = job_response,
-    .problems = control_problems,
+    .problems = revision_problems,
 };
 
 enum handled handle_job_patch(struct request *request)

@@ -9,32 +9,19 @@
 #include "studies/study_request.h"
 #include "waits.h"
 
-static const char *const study_headers[] = {"ETag", NULL};
-
 const struct operation operation_study = {
     .summary = "A study as it is",
     .path = operation_study_path,
-    .query = (const struct json_field[]){{.key = "wait",
-                                          .kind = FIELD_NUMBER,
-                                          .optional = true,
-                                          .minimum = 0,
-                                          .maximum = REVISION_WAIT_SECONDS_MAX,
-                                          .meaning = "seconds to wait at most: with If-None-Match "
-                                                     "until the revision differs, without it "
-                                                     "until the study has ended"},
-                                         OPERATION_END},
-    .headers =
-        (const struct json_field[]){
-            {.key = "If-None-Match", .optional = true, .meaning = "ETag that is known already"},
-            OPERATION_END},
+    .query = revision_wait_query,
+    .headers = revision_known_headers,
     .responses =
         (const struct response[]){
             {.status = 200,
              .type = "application/json",
              .schema = &schema_study,
-             .headers = study_headers,
+             .headers = revision_headers,
              .meaning = "the study; its ETag changes with everything but progress"},
-            {.status = 304, .headers = study_headers, .meaning = "it has the ETag that is known"},
+            REVISION_UNCHANGED,
             RESPONSE_END},
 };
 
@@ -58,14 +45,6 @@ enum handled handle_study(struct request *request)
     }
 }
 
-/* Of calls that change a study. */
-static const struct json_field match_headers[] = {
-    {.key = "If-Match",
-     .optional = true,
-     .meaning = "only while the study has this ETag, its revision"},
-    OPERATION_END};
-static const unsigned int control_problems[] = {409, 412, 0};
-
 /* The revision that the call insists on. False: the reply is made. */
 static bool control_begin(struct request *request, int64_t *revision)
 {
@@ -81,14 +60,14 @@ const struct operation operation_study_cancel = {
     .summary = "Cancels a study: rows that wait or are queued at once, those that run as soon as "
                "their processes end",
     .path = operation_study_path,
-    .headers = match_headers,
+    .headers = revision_match_headers,
     .responses = (const struct response[]){{.status = 200,
                                             .type = "application/json",
                                             .schema = &schema_study,
-                                            .headers = study_headers,
+                                            .headers = revision_headers,
                                             .meaning = "the study as it is now"},
                                            RESPONSE_END},
-    .problems = control_problems,
+    .problems = revision_problems,
 };
 
 enum handled handle_study_cancel(struct request *request)
@@ -109,9 +88,9 @@ enum handled handle_study_cancel(struct request *request)
 const struct operation operation_study_delete = {
     .summary = "Deletes a study that has ended, with its own jobs and all their files",
     .path = operation_study_path,
-    .headers = match_headers,
+    .headers = revision_match_headers,
     .responses = (const struct response[]){{.status = 204, .meaning = "it is gone"}, RESPONSE_END},
-    .problems = control_problems,
+    .problems = revision_problems,
 };
 
 enum handled handle_study_delete(struct request *request)
