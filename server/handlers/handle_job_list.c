@@ -2,12 +2,13 @@
 /* GET /v1/jobs */
 #include "identifier.h"
 #include "jobs.h"
+#include "list_page.h"
 #include "request.h"
 #include "schemas.h"
 
 #include <string.h>
 
-enum { LIMIT_DEFAULT = 100, LIMIT_MAX = 500, LABEL_KEY_BYTES = 300 };
+enum { LABEL_KEY_BYTES = 300 };
 
 struct list {
     struct service *service;
@@ -59,18 +60,10 @@ static bool filter_read(struct request *request, struct store_filter *filter,
                         char keys[STORE_LABEL_MAX][LABEL_KEY_BYTES])
 {
     const char *state = target_query(&request->target, "state");
-    const char *cursor = target_query(&request->target, "cursor");
     filter->study = target_query(&request->target, "study");
     filter->state = state == NULL ? JOB_STATE_COUNT : job_state_find(state);
     filter->text = target_query(&request->target, "text");
-    if (!labels_read(request, filter, keys))
-        return false;
-    if (cursor != NULL && !identifier_valid(cursor)) {
-        request_query_refuse(request, "cursor", "this is no cursor of this list");
-        return false;
-    }
-    filter->before = cursor;
-    return true;
+    return labels_read(request, filter, keys);
 }
 
 /* Whether every field asked for is one of a job. False: the reply is made. */
@@ -120,17 +113,7 @@ const struct operation operation_job_list = {
              .kind = FIELD_TEXT,
              .optional = true,
              .meaning = "only these members of every job, separated by commas"},
-            {.key = "limit",
-             .kind = FIELD_INTEGER,
-             .optional = true,
-             .minimum = 1,
-             .maximum = LIMIT_MAX,
-             .preset = LIMIT_DEFAULT,
-             .meaning = "so many at most"},
-            {.key = "cursor",
-             .kind = FIELD_TEXT,
-             .optional = true,
-             .meaning = "of the page before"},
+            LIST_PAGE_QUERY,
             OPERATION_END},
     .responses = (const struct response[]){{.status = 200,
                                             .type = "application/json",
@@ -144,12 +127,14 @@ enum handled handle_job_list(struct request *request)
     struct talus_error error = {0};
     struct store_filter filter = {.state = JOB_STATE_COUNT};
     char keys[STORE_LABEL_MAX][LABEL_KEY_BYTES];
-    const double limit = request_query_number(request, "limit");
+    struct list_page page;
     const char *fields = target_query(&request->target, "fields");
-    if (!fields_check(request, fields) || !filter_read(request, &filter, keys))
+    if (!fields_check(request, fields) || !filter_read(request, &filter, keys) ||
+        !list_page_read(request, &page))
         return HANDLED;
-    struct list list = {.service = request->service, .fields = fields, .limit = (size_t)limit};
-    filter.limit = (int64_t)limit + 1;
+    struct list list = {.service = request->service, .fields = fields, .limit = page.limit};
+    filter.before = page.before;
+    filter.limit = (int64_t)page.limit + 1;
     text_add_string(&list.text, "{\"jobs\":[");
     if (store_job_list(request->service->store, &filter, list_add, &list, &error) == TALUS_OK) {
         const char *quote = list.more ? "\"" : "";

@@ -1,15 +1,11 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* GET /v1/studies */
-#include "identifier.h"
+#include "list_page.h"
 #include "request.h"
 #include "schemas.h"
 #include "service.h"
 #include "studies/study_store.h"
 #include "studies/study_view.h"
-
-#include <string.h>
-
-enum { LIMIT_DEFAULT = 100, LIMIT_MAX = 500 };
 
 static bool list_add(const struct study *study, void *context)
 {
@@ -43,17 +39,7 @@ const struct operation operation_study_list = {
                                           .optional = true,
                                           .words = study_state_words,
                                           .meaning = "only those in this state"},
-                                         {.key = "limit",
-                                          .kind = FIELD_INTEGER,
-                                          .optional = true,
-                                          .minimum = 1,
-                                          .maximum = LIMIT_MAX,
-                                          .preset = LIMIT_DEFAULT,
-                                          .meaning = "so many at most"},
-                                         {.key = "cursor",
-                                          .kind = FIELD_TEXT,
-                                          .optional = true,
-                                          .meaning = "of the page before"},
+                                         LIST_PAGE_QUERY,
                                          OPERATION_END},
     .responses = (const struct response[]){{.status = 200,
                                             .type = "application/json",
@@ -66,18 +52,16 @@ enum handled handle_study_list(struct request *request)
 {
     struct talus_error error = {0};
     const char *state = target_query(&request->target, "state");
-    const size_t limit = (size_t)request_query_number(request, "limit");
+    struct list_page page;
+    if (!list_page_read(request, &page))
+        return HANDLED;
     const struct study_filter filter = {.state = state == NULL ? STUDY_STATE_COUNT
                                                                : study_state_find(state),
-                                        .before = target_query(&request->target, "cursor"),
-                                        .limit = (int64_t)limit + 1};
-    if (filter.before != NULL && !identifier_valid(filter.before)) {
-        request_query_refuse(request, "cursor", "this is no cursor of this list");
-        return HANDLED;
-    }
+                                        .before = page.before,
+                                        .limit = (int64_t)page.limit + 1};
     json_t *ids = json_array();
     if (study_store_list(request->service->store, &filter, list_add, ids, &error) == TALUS_OK)
-        reply_json(&request->reply, MHD_HTTP_OK, page_json(request->service, ids, limit));
+        reply_json(&request->reply, MHD_HTTP_OK, page_json(request->service, ids, page.limit));
     else
         reply_error(&request->reply, request->raw, &error);
     json_decref(ids);
