@@ -5,7 +5,6 @@
 #include "schemas.h"
 
 #include <math.h>
-#include <stddef.h>
 #include <string.h>
 
 enum { LABELS_MAX = 64, DEFAULT_RETRIES = 2, THREADS_MAX = 4096 };
@@ -13,8 +12,6 @@ enum { LABELS_MAX = 64, DEFAULT_RETRIES = 2, THREADS_MAX = 4096 };
 /* With `threads` 0 every so many particles get a thread: below that, threads cost more than they
  * give. */
 static const double particles_per_thread = 20000;
-
-#define AT(member) offsetof(struct job, member)
 
 /* `label=key:value` must stay unambiguous. */
 static bool label_key_holds(const char *key)
@@ -30,21 +27,21 @@ static const struct json_field limit_fields[] = {
      .optional = true,
      .minimum = 1e-3,
      .maximum = 1e9,
-     .offset = AT(wall_limit),
+     .offset = offsetof(struct job, wall_limit),
      .meaning = "over all attempts"},
     {.key = "memory_bytes",
      .kind = FIELD_INTEGER,
      .optional = true,
      .minimum = 1 << 20,
      .maximum = (double)(INT64_C(1) << 50),
-     .offset = AT(memory_limit),
+     .offset = offsetof(struct job, memory_limit),
      .meaning = "of the worker"},
     {.key = "disk_bytes",
      .kind = FIELD_INTEGER,
      .optional = true,
      .minimum = 1 << 16,
      .maximum = (double)(INT64_C(1) << 50),
-     .offset = AT(disk_limit),
+     .offset = offsetof(struct job, disk_limit),
      .meaning = "of the results"},
     {.key = NULL},
 };
@@ -71,44 +68,10 @@ const struct json_field submission_retries = {.kind = FIELD_INTEGER,
                                               .preset = DEFAULT_RETRIES,
                                               .meaning = "after crashes"};
 
-#define SETTINGS                                                                                   \
-    {.key = "labels",                                                                              \
-     .kind = FIELD_SAME,                                                                           \
-     .optional = true,                                                                             \
-     .item = &submission_labels,                                                                   \
-     .offset = AT(labels)},                                                                        \
-        {.key = "priority",                                                                        \
-         .kind = FIELD_SAME,                                                                       \
-         .optional = true,                                                                         \
-         .item = &submission_priority,                                                             \
-         .offset = AT(priority)},                                                                  \
-    {                                                                                              \
-        .key = "limits", .kind = FIELD_SAME, .optional = true, .item = &submission_limits          \
-    }
-
-static const struct json_field settings_fields[] = {SETTINGS, {.key = NULL}};
+static const struct json_field settings_fields[] = {SUBMISSION_SETTINGS, {.key = NULL}};
 
 static const struct json_field submission_fields[] = {
-    {.key = "scene", .kind = FIELD_SCENE, .offset = FIELD_NOWHERE},
-    {.key = "name",
-     .kind = FIELD_TEXT,
-     .optional = true,
-     .most = SUBMISSION_NAME_CHARACTERS,
-     .offset = AT(name),
-     .meaning = "for people"},
-    SETTINGS,
-    {.key = "threads",
-     .kind = FIELD_SAME,
-     .optional = true,
-     .item = &submission_threads,
-     .preset = 1,
-     .offset = AT(threads)},
-    {.key = "retries",
-     .kind = FIELD_SAME,
-     .optional = true,
-     .item = &submission_retries,
-     .preset = DEFAULT_RETRIES,
-     .offset = AT(retries)},
+    SUBMISSION_FIELDS(true),
     {.key = "reuse",
      .kind = FIELD_BOOLEAN,
      .optional = true,

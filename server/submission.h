@@ -7,6 +7,7 @@
 #include "json_field.h"
 
 #include <jansson.h>
+#include <stddef.h>
 
 /* Reads everything but the scene into an empty *job and adds each mistake to *errors. `workers` is
  * the largest number of threads that can run. *scene is borrowed, NULL if it is missing. */
@@ -24,9 +25,30 @@ TALUS_MUST_CHECK enum talus_status submission_answer_take(struct job *job, const
                                                           double workers,
                                                           struct talus_error *error);
 
-/* For the tables of other bodies: the offsets are those of a job. */
 extern const struct json_field submission_labels, submission_limits, submission_priority,
     submission_threads, submission_retries;
 enum { SUBMISSION_NAME_CHARACTERS = 256 };
+
+/* For the tables of bodies that are read into a job: what may change later ... */
+#define SUBMISSION_SETTINGS                                                                        \
+    SUBMISSION_FIELD(labels), SUBMISSION_FIELD(priority),                                          \
+    {                                                                                              \
+        .key = "limits", .kind = FIELD_SAME, .optional = true, .item = &submission_limits          \
+    }
+/* ... and all that means the same for a job and for those of a study. */
+#define SUBMISSION_FIELDS(name_optional)                                                           \
+    {.key = "scene", .kind = FIELD_SCENE, .offset = FIELD_NOWHERE},                                \
+        {.key = "name",                                                                            \
+         .kind = FIELD_TEXT,                                                                       \
+         .optional = (name_optional),                                                              \
+         .most = SUBMISSION_NAME_CHARACTERS,                                                       \
+         .offset = offsetof(struct job, name),                                                     \
+         .meaning = "for people"},                                                                 \
+        SUBMISSION_SETTINGS, SUBMISSION_FIELD(threads), SUBMISSION_FIELD(retries)
+#define SUBMISSION_FIELD(member)                                                                   \
+    {                                                                                              \
+        .key = #member, .kind = FIELD_SAME, .optional = true, .item = &submission_##member,        \
+        .offset = offsetof(struct job, member)                                                     \
+    }
 
 #endif

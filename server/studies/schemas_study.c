@@ -1,15 +1,10 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* A study as it is sent and as it is answered (study_view.c, study_results.c). */
-#include "job.h"
 #include "schemas.h"
 #include "studies/study.h"
 #include "submission.h"
 
-#include <stddef.h>
-
 enum { METRICS_MAX = 64 };
-
-#define AT(member) offsetof(struct job, member)
 
 static const struct json_field metric_name = {.kind = FIELD_TEXT,
                                               .most = SUBMISSION_NAME_CHARACTERS};
@@ -35,37 +30,9 @@ static const struct json_field chart_fields[] = {
     {.key = NULL},
 };
 
-/* What the jobs of a study are submitted with: those members of a submission that mean the same for
- * each of them. They are read into a job. */
-#define SHARED_FIELDS                                                                              \
-    {.key = "name",                                                                                \
-     .kind = FIELD_TEXT,                                                                           \
-     .optional = NAME_OPTIONAL,                                                                    \
-     .most = SUBMISSION_NAME_CHARACTERS,                                                           \
-     .offset = AT(name),                                                                           \
-     .meaning = "for people"},                                                                     \
-        {.key = "scene", .kind = FIELD_SCENE, .offset = FIELD_NOWHERE},                            \
-        {.key = "labels",                                                                          \
-         .kind = FIELD_SAME,                                                                       \
-         .optional = true,                                                                         \
-         .item = &submission_labels,                                                               \
-         .offset = AT(labels)},                                                                    \
-        {.key = "priority",                                                                        \
-         .kind = FIELD_SAME,                                                                       \
-         .optional = true,                                                                         \
-         .item = &submission_priority,                                                             \
-         .offset = AT(priority)},                                                                  \
-        {.key = "limits", .kind = FIELD_SAME, .optional = true, .item = &submission_limits},       \
-        {.key = "threads",                                                                         \
-         .kind = FIELD_SAME,                                                                       \
-         .optional = true,                                                                         \
-         .item = &submission_threads,                                                              \
-         .offset = AT(threads)},                                                                   \
-        {.key = "retries",                                                                         \
-         .kind = FIELD_SAME,                                                                       \
-         .optional = true,                                                                         \
-         .item = &submission_retries,                                                              \
-         .offset = AT(retries)},                                                                   \
+/* A study as it is sent. What its jobs are submitted with is read into a job. */
+#define STUDY_FIELDS(job_alone)                                                                    \
+    SUBMISSION_FIELDS(job_alone),                                                                  \
         {.key = "reuse",                                                                           \
          .kind = FIELD_BOOLEAN,                                                                    \
          .optional = true,                                                                         \
@@ -74,13 +41,13 @@ static const struct json_field chart_fields[] = {
                     "unless false, a job only with true"},                                         \
         {.key = "design",                                                                          \
          .kind = FIELD_MAP,                                                                        \
-         .optional = NAME_OPTIONAL,                                                                \
+         .optional = job_alone,                                                                    \
          .item = &anything,                                                                        \
          .offset = FIELD_NOWHERE,                                                                  \
          .meaning = "one of grid, list, sample, work_precision, bisect"},                          \
         {.key = "metrics",                                                                         \
          .kind = FIELD_LIST,                                                                       \
-         .optional = NAME_OPTIONAL,                                                                \
+         .optional = job_alone,                                                                    \
          .most = METRICS_MAX,                                                                      \
          .item = &metric_name,                                                                     \
          .offset = FIELD_NOWHERE,                                                                  \
@@ -90,12 +57,8 @@ static const struct json_field chart_fields[] = {
         .meaning = "what chart.svg draws"                                                          \
     }
 
-#define NAME_OPTIONAL false
-static const struct json_field study_fields[] = {SHARED_FIELDS, {.key = NULL}};
-#undef NAME_OPTIONAL
-#define NAME_OPTIONAL true
-static const struct json_field question_fields[] = {SHARED_FIELDS, {.key = NULL}};
-#undef NAME_OPTIONAL
+static const struct json_field study_fields[] = {STUDY_FIELDS(false), {.key = NULL}};
+static const struct json_field question_fields[] = {STUDY_FIELDS(true), {.key = NULL}};
 const struct json_field schema_study_submission = {
     .kind = FIELD_OBJECT, .schema = "StudySubmission", .fields = study_fields};
 const struct json_field schema_forecast_question = {
