@@ -55,6 +55,8 @@ void json_fields_read(const struct json_field *table, const json_t *object, cons
 void json_keys_check(const json_t *object, const char *parent, const char *const *known,
                      json_t *errors);
 
+/* Whether a number has bounds. */
+bool json_field_bounded(const struct json_field *field);
 /* The field that a FIELD_SAME stands for; any other as it is. */
 struct json_field json_field_resolve(const struct json_field *field);
 /* JSON Schema of a value; what has a name of its own is put into `named` and referred to. New

@@ -61,8 +61,7 @@ static bool number_holds(const struct json_field *field, const char *pointer, co
                          json_t *errors)
 {
     const double value = json_number_value(given);
-    const bool bounded =
-        field->minimum < 0 || field->minimum > 0 || field->maximum < 0 || field->maximum > 0;
+    const bool bounded = json_field_bounded(field);
     if (!json_is_number(given) || (field->kind == FIELD_INTEGER && floor(value) < value)) {
         wrong_type(pointer, given, field->kind == FIELD_INTEGER ? "a whole number" : "a number",
                    errors);

@@ -36,8 +36,7 @@ static void put_text(json_t *schema, const struct json_field *field)
 
 static void put_number(json_t *schema, const struct json_field *field)
 {
-    const bool bounded =
-        field->minimum < 0 || field->minimum > 0 || field->maximum < 0 || field->maximum > 0;
+    const bool bounded = json_field_bounded(field);
     const bool above = bounded || field->above_minimum;
     if (above && isfinite(field->minimum))
         put(schema, field->above_minimum ? "exclusiveMinimum" : "minimum", number(field->minimum));
@@ -105,6 +104,11 @@ static json_t *inline_schema(const struct json_field *field, json_t *named)
     if (field->kind == FIELD_LIST && field->most > 0)
         put(schema, "maxItems", json_integer((json_int_t)field->most));
     return schema;
+}
+
+bool json_field_bounded(const struct json_field *field)
+{
+    return field->minimum < 0 || field->minimum > 0 || field->maximum < 0 || field->maximum > 0;
 }
 
 struct json_field json_field_resolve(const struct json_field *field)

@@ -59,8 +59,7 @@ static bool number_check(struct request *request, const struct json_field *field
                          const struct target_parameter *parameter)
 {
     const double value = number_read(parameter->value);
-    const bool bounded =
-        field->minimum < 0 || field->minimum > 0 || field->maximum < 0 || field->maximum > 0;
+    const bool bounded = json_field_bounded(field);
     const bool whole = field->kind == FIELD_INTEGER;
     char detail[128];
     if (!isnan(value) && (!whole || floor(value) >= value) &&
