@@ -163,9 +163,13 @@ bool access_check(struct request *request)
 
 bool access_is_change(const struct request *request)
 {
-    const struct route *route = request->route;
+    static const char *const safe[] = {"GET", "HEAD", "OPTIONS", "TRACE"}; /* RFC 9110, 9.2.1 */
+    for (size_t index = 0; index < sizeof safe / sizeof safe[0]; index++) {
+        if (strcmp(request->method, safe[index]) == 0)
+            return false;
+    }
     /* A forecast has a body, and nothing else of a submission. */
-    return route != NULL && strcmp(route->method, "GET") != 0 && route->handle != handle_forecast;
+    return request->route == NULL || request->route->handle != handle_forecast;
 }
 
 static enum talus_status job_owner(struct request *request, char *owner, size_t size,

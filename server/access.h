@@ -33,7 +33,7 @@ bool access_check(struct request *request);
 /* Whether the caller may change what the path names: with the role submit only what is theirs. May
  * wait for the store. False: the reply is made (403). */
 bool access_owner_check(struct request *request);
-/* Whether the request, if it succeeds, changes something. */
+/* Whether the request is to change something, by its method; its route may be unknown. */
 bool access_is_change(const struct request *request);
 /* Whether a token that was valid when its request came is so still. */
 bool access_holds(struct access *access, const struct token_proof *proof);

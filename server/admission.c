@@ -1,8 +1,10 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 #include "admission.h"
 
+#include "json_text.h"
 #include "service.h"
 
+#include <math.h>
 #include <string.h>
 #include <sys/statvfs.h>
 
@@ -55,8 +57,11 @@ bool admission_disk(struct request *request, double bytes)
                   request->service->config->disk_reserve_bytes;
     if (bytes <= left)
         return true;
-    reply_problem(&request->reply, MHD_HTTP_INSUFFICIENT_STORAGE, "disk", request->raw, NULL,
-                  "the results need %.3g bytes and %.3g are free", bytes, left < 0 ? 0 : left);
+    left = left < 0 ? 0 : left;
+    json_t *numbers = json_pack("{s:o, s:o}", "needed_bytes", json_number_make(ceil(bytes)),
+                                "free_bytes", json_number_make(floor(left)));
+    reply_problem_with(&request->reply, MHD_HTTP_INSUFFICIENT_STORAGE, "disk", request->raw,
+                       numbers, "the results need %.3g bytes and %.3g are free", bytes, left);
     return false;
 }
 

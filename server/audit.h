@@ -22,7 +22,7 @@ TALUS_MUST_CHECK enum talus_status audit_create(struct audit **audit, const char
 void audit_destroy(struct audit *audit);
 /* Notes a request that has its reply; waits for the disk at worst. */
 void audit_request(struct audit *audit, const struct request *request);
-/* Notes one that was refused because of who asks; never waits. Beyond 10 a second they are only
+/* Notes one that was refused before a handler saw it; never waits. Beyond 10 a second they are only
  * counted, in `suppressed` of the next line. */
 void audit_refusal(struct audit *audit, const struct request *request);
 /* Notes that the tokens were read again, asked for by a process of this user. */

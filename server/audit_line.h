@@ -7,7 +7,7 @@
 #include "text.h"
 
 /* Appends one line: at, who, role, from, uid of a Unix socket's other end, forwarded_for, method,
- * target without its query, status, job or study, code of a refusal. Never a secret. */
+ * target without its query, status, job or study. Never a secret. */
 void audit_line_request(struct text *line, const struct request *request, uint64_t suppressed);
 
 #endif

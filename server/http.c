@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 #include "http.h"
 
+#include "access.h"
 #include "audit.h"
 #include "http_checks.h"
 #include "http_origin.h"
@@ -76,6 +77,16 @@ static void on_connection(void *context, struct MHD_Connection *connection, void
         information == NULL ? NULL : http_watch_open(server->watch, information->connect_fd);
 }
 
+/* Notes what was refused before a handler saw it: because of who asks, or a change that is
+ * malformed. */
+static void refusal_note(struct request *request)
+{
+    if (request->audited || !(request->refused || access_is_change(request)))
+        return;
+    audit_refusal(request->service->audit, request);
+    request->audited = true;
+}
+
 /* Gives the reply to the library. */
 static enum MHD_Result reply_queue(struct request *request)
 {
@@ -90,6 +101,7 @@ static enum MHD_Result reply_queue(struct request *request)
         reply_header(reply, MHD_HTTP_HEADER_CONNECTION, "close");
     if (reply->response == NULL)
         return MHD_NO;
+    refusal_note(request);
     metrics_request(request->service->metrics, request);
     return MHD_queue_response(request->connection, reply->status, reply->response);
 }
@@ -105,8 +117,8 @@ static enum MHD_Result request_begin(struct request *request, const char *method
     if (request->method == NULL)
         return MHD_NO;
     http_check(request);
-    if (request->refused)
-        audit_refusal(request->service->audit, request);
+    if (request->refused || request->reply.response != NULL)
+        refusal_note(request);
     if (request->reply.response != NULL && request->reply.close)
         return reply_queue(request);
     return MHD_YES;
@@ -125,6 +137,7 @@ static enum MHD_Result body_take(struct request *request, const char *data, size
         text_release(&request->body);
         reply_problem(&request->reply, MHD_HTTP_CONTENT_TOO_LARGE, "too_large", request->raw, NULL,
                       "a body has at most %.0f bytes", limit);
+        refusal_note(request); /* if still more comes there is no answer */
     } else {
         text_add(&request->body, data, length);
     }

@@ -1,19 +1,13 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Tables of members as JSON Schema (2020-12), as OpenAPI 3.1 has it. */
 #include "json_field.h"
+#include "json_text.h"
 
 #include <math.h>
 
 static void put(json_t *object, const char *key, json_t *value)
 {
     (void)json_object_set_new(object, key, value);
-}
-
-/* Whole numbers without a fraction, as a person would write them. */
-static json_t *number(double value)
-{
-    return floor(value) < value || fabs(value) > 9e15 ? json_real(value)
-                                                      : json_integer((json_int_t)value);
 }
 
 static json_t *words_list(const struct json_field *field)
@@ -39,11 +33,12 @@ static void put_number(json_t *schema, const struct json_field *field)
     const bool bounded = json_field_bounded(field);
     const bool above = bounded || field->above_minimum;
     if (above && isfinite(field->minimum))
-        put(schema, field->above_minimum ? "exclusiveMinimum" : "minimum", number(field->minimum));
+        put(schema, field->above_minimum ? "exclusiveMinimum" : "minimum",
+            json_number_make(field->minimum));
     if (bounded && isfinite(field->maximum))
-        put(schema, "maximum", number(field->maximum));
+        put(schema, "maximum", json_number_make(field->maximum));
     if (isfinite(field->preset) && fabs(field->preset) > 0)
-        put(schema, "default", number(field->preset));
+        put(schema, "default", json_number_make(field->preset));
 }
 
 static void put_object(json_t *schema, const struct json_field *field, json_t *named)

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 #include "json_text.h"
 
+#include <math.h>
 #include <stdint.h>
 #include <stdlib.h>
 
@@ -135,4 +136,10 @@ char *json_text(const json_t *value, unsigned int indent)
     struct text text = {0};
     json_text_add(&text, value, indent);
     return text_take(&text);
+}
+
+json_t *json_number_make(double value)
+{
+    return floor(value) < value || fabs(value) > 9e15 ? json_real(value)
+                                                      : json_integer((json_int_t)value);
 }

@@ -13,4 +13,7 @@ void json_text_add(struct text *text, const json_t *value, unsigned int indent);
 /* The same as a new string (free it), NULL without memory. */
 char *json_text(const json_t *value, unsigned int indent);
 
+/* A new number; whole ones are integers, as a person would write them. NULL if it is not finite. */
+json_t *json_number_make(double value);
+
 #endif

@@ -138,25 +138,43 @@ static json_t *text_json(const char *text)
     return string == NULL ? json_string("(not UTF-8)") : string;
 }
 
-void reply_problem(struct reply *reply, unsigned int status, const char *code, const char *instance,
-                   json_t *errors, const char *format, ...)
+__attribute__((format(printf, 6, 0))) static void
+problem_reply(struct reply *reply, unsigned int status, const char *code, const char *instance,
+              json_t *members, const char *format, va_list arguments)
 {
     char detail[1024], type[64];
-    va_list arguments;
-    va_start(arguments, format);
     (void)vsnprintf(detail, sizeof detail, format, arguments);
-    va_end(arguments);
     (void)snprintf(type, sizeof type, "urn:talus:problem:%s", code);
-    while (json_array_size(errors) > PROBLEM_ERROR_MAX)
-        (void)json_array_remove(errors, json_array_size(errors) - 1);
-    json_t *document =
-        json_pack("{s:s, s:s, s:i, s:o, s:o, s:o*}", "type", type, "title", problem_title(status),
-                  "status", (int)status, "detail", text_json(detail), "instance",
-                  text_json(instance), "errors", errors);
+    json_t *document = json_pack("{s:s, s:s, s:i, s:o, s:o}", "type", type, "title",
+                                 problem_title(status), "status", (int)status, "detail",
+                                 text_json(detail), "instance", text_json(instance));
+    (void)json_object_update_missing(document, members);
+    json_decref(members);
     reply_document(reply, status, "application/problem+json", document);
     reply_header(reply, MHD_HTTP_HEADER_CACHE_CONTROL, "no-store");
     if (status == MHD_HTTP_SERVICE_UNAVAILABLE || status == MHD_HTTP_TOO_MANY_REQUESTS)
         reply_header(reply, MHD_HTTP_HEADER_RETRY_AFTER, "5");
+}
+
+void reply_problem(struct reply *reply, unsigned int status, const char *code, const char *instance,
+                   json_t *errors, const char *format, ...)
+{
+    va_list arguments;
+    while (json_array_size(errors) > PROBLEM_ERROR_MAX)
+        (void)json_array_remove(errors, json_array_size(errors) - 1);
+    json_t *members = errors == NULL ? NULL : json_pack("{s:o}", "errors", errors);
+    va_start(arguments, format);
+    problem_reply(reply, status, code, instance, members, format, arguments);
+    va_end(arguments);
+}
+
+void reply_problem_with(struct reply *reply, unsigned int status, const char *code,
+                        const char *instance, json_t *members, const char *format, ...)
+{
+    va_list arguments;
+    va_start(arguments, format);
+    problem_reply(reply, status, code, instance, members, format, arguments);
+    va_end(arguments);
 }
 
 void reply_error(struct reply *reply, const char *instance, const struct talus_error *error)

@@ -44,6 +44,10 @@ void reply_header(struct reply *reply, const char *name, const char *value);
  * taken; more than 50 are cut); `instance` is the request's target or NULL. */
 void reply_problem(struct reply *reply, unsigned int status, const char *code, const char *instance,
                    json_t *errors, const char *format, ...) __attribute__((format(printf, 6, 7)));
+/* The same with members of its own (the reference is taken) instead of `errors`. */
+void reply_problem_with(struct reply *reply, unsigned int status, const char *code,
+                        const char *instance, json_t *members, const char *format, ...)
+    __attribute__((format(printf, 6, 7)));
 /* What went wrong inside: "not_found" is 404, "state" 409, anything else 500. */
 void reply_error(struct reply *reply, const char *instance, const struct talus_error *error);
 void reply_release(struct reply *reply);

@@ -59,6 +59,7 @@ struct request {
     double began;          /* its header fields were there (monotonic [s]) */
     bool begun;            /* headers are checked */
     bool refused;          /* because of who asks */
+    bool audited;          /* is in the audit log */
     bool handed_in;        /* was given to a lane */
     double deadline;       /* of a wait (monotonic), 0: not waiting yet */
     bool expired;          /* the wait is over, answer */

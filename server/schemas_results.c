@@ -99,6 +99,9 @@ static const struct json_field problem_members[] = {
      .most = 50,
      .item = &schema_issue,
      .meaning = "every mistake"},
+    MEMBER_SOMETIMES(INTEGER, "needed_bytes", "of a 507: what the results take by their forecast"),
+    MEMBER_SOMETIMES(INTEGER, "free_bytes",
+                     "of a 507: what the disk has for results, without the reserve of the daemon"),
     MEMBER_END,
 };
 const struct json_field schema_problem = {

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 #include "study_reader.h"
 
+#include "json_text.h"
 #include "reply.h"
 
 #include <math.h>
@@ -81,7 +82,7 @@ bool study_rows_fit(struct study_reader *reader, double rows, size_t values, con
     if (rows <= (double)reader->rows_max && cells <= STUDY_CELL_MAX)
         return true;
     double fitting = fmin((double)reader->rows_max, floor(STUDY_CELL_MAX / (double)(values + 1)));
-    json_t *given = rows < 9e15 ? json_integer((json_int_t)rows) : json_real(fmin(rows, 1e300));
+    json_t *given = json_number_make(fmin(rows, 1e300));
     json_t *allowed = json_pack("{s:I}", "maximum", (json_int_t)fitting);
     issue_add(reader->errors, pointer, "range", given, allowed,
               "the study would have %.15g rows; at most %.15g are allowed", rows, fitting);

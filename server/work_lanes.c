@@ -44,8 +44,10 @@ static void request_answer(struct request *request)
     bool change = access_is_change(request);
     if (access_owner_check(request) && request->route->handle(request) == HANDLED_PARKED)
         return; /* and may have been answered by now */
-    if (change)
+    if (change) {
         audit_request(request->service->audit, request);
+        request->audited = true;
+    }
     MHD_resume_connection(connection);
 }
 

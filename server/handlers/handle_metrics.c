@@ -1,5 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* GET /metrics: what there is now, and what was counted. */
+#include "access.h"
+#include "audit.h"
 #include "calibration.h"
 #include "events.h"
 #include "moment.h"
@@ -71,6 +73,13 @@ static void service_print(struct text *text, struct service *service)
                  "Processor time of the daemon itself.");
     number_print(text, "talus_uptime_seconds", "gauge", moment_monotonic() - service->began,
                  "Time since the daemon started.");
+    number_print(text, "talus_tokens", "gauge", (double)access_token_count(service->access),
+                 "Access tokens in force.");
+    number_print(text, "talus_tokens_stale", "gauge", access_is_stale(service->access),
+                 "Whether the token file has mistakes, so that the tokens of before are in force.");
+    number_print(text, "talus_audit_lost_total", "counter",
+                 (double)audit_lost_count(service->audit),
+                 "Lines that the audit log lacks: the file took no writes.");
     number_print(text, "talus_draining", "gauge", atomic_load(&service->draining),
                  "Whether the daemon is stopping and takes no work.");
     metrics_print_head(text, "talus_build_info", "gauge", "The build, as labels; always 1.");

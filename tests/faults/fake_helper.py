@@ -2,7 +2,8 @@
 """The fake worker's `helper`: answers what the daemon asks about scenes and pictures, one JSON line
 in, one out. Files in SIDE switch misbehaviour on: helper-exit, helper-die, helper-hang,
 helper-half, helper-nonsense, helper-endless, helper-render-hang. A scene titled
-`fake {"helper": "die"}` kills the helper that reads it, {"helper": "hang"} holds it."""
+`fake {"helper": "die"}` kills the helper that reads it, {"helper": "hang"} holds it, one titled
+{"disk_bytes": N} is forecast to take so many."""
 import hashlib
 import json
 import os
@@ -23,6 +24,12 @@ def build(side):
             return file.read()
     except FileNotFoundError:
         return "fake"
+
+
+def directive(scene):
+    """What the title of a scene tells the fake worker."""
+    title = scene.get("title", "") if isinstance(scene, dict) else ""
+    return json.loads(title[5:]) if title.startswith("fake ") else {}
 
 
 def check(question, side):
@@ -47,7 +54,8 @@ def check(question, side):
     hashed = json.dumps(json.loads(hashed, parse_int=float), sort_keys=True)
     forecast = {"particles": 64, "active_cells": 16, "critical_time_step": 0.001, "steps": 1000,
                 "time_step": 0.0004, "memory_bytes": 100000, "bytes_per_particle": 200,
-                "disk_bytes": 100000, "wall_seconds": {"low": 0.1, "expected": 0.2, "high": 0.4}}
+                "disk_bytes": directive(scene).get("disk_bytes", 100000),
+                "wall_seconds": {"low": 0.1, "expected": 0.2, "high": 0.4}}
     return {"ok": True, "build": build(side), "effective": effective, "forecast": forecast,
             "advice": [], "warnings": [],
             "hash": hashlib.sha256(hashed.encode()).hexdigest()}
@@ -106,8 +114,7 @@ def misbehave(side, question):
         return os.path.exists(os.path.join(side, "helper-" + name))
     wish = None
     for scene in [question.get("scene"), *question.get("scenes", [])]:
-        title = scene.get("title", "") if isinstance(scene, dict) else ""
-        wish = wish or (json.loads(title[5:]).get("helper") if title.startswith("fake ") else None)
+        wish = wish or directive(scene).get("helper")
     if on("exit"):
         sys.exit(3)
     if on("die") or wish == "die":

@@ -67,6 +67,63 @@ class Changes(TokenTest):
         self.assertEqual(last["forwarded_for"], "(not UTF-8)")
 
 
+class Malformed(TokenTest):
+    """Changes that are refused before any handler sees them are noted like others."""
+
+    KIND = {"Content-Type": "application/json"}
+
+    def told(self, who, count):
+        """The lines of a name, when there are so many; those of refusals come within a second."""
+        def lines():
+            found = [line for line in audit_lines(self.daemon) if line["who"] == who]
+            return found if len(found) >= count else None
+        return wait_for(lines, 20, f"{count} lines of {who}")
+
+    def test_refused_before_a_handler(self):
+        bob = self.as_("bob")
+        calls = [("POST", "/v1/jobs", "{", self.KIND, 400),
+                 ("POST", "/v1/jobs", "{}", {"Content-Type": "text/plain"}, 415),
+                 ("POST", "/v1/studies", "{}", {**self.KIND, "Content-Encoding": "gzip"}, 415),
+                 ("DELETE", "/v1/jobs/abc?force=1", None, {}, 422),
+                 ("PUT", "/v1/jobs", None, {}, 405),
+                 ("POST", "/v1/nothing", None, {}, 404),
+                 ("PATCH", "/v1/jobs/%zz", None, {}, 400),
+                 ("POST", "/v1/jobs", " " * (17 << 20), self.KIND, 413)]
+        for method, path, body, headers, status in calls:
+            reply = bob.request(method, path, body, headers)
+            self.assertEqual(reply.status, status, (method, path))
+        bob.post("/v1/forecast", b"{}", content_type="text/plain")
+        bob.get("/v1/jobs?nothing=1")
+        bob.request("HEAD", "/v1/nothing")
+        bob.delete("/v1/jobs/last")
+        # Who calls is not looked at where the target itself makes no sense.
+        known = [call for call in calls if call[1] != "/v1/jobs/%zz"]
+        lines = self.told("bob", len(known) + 1)
+        self.assertEqual(sorted((line["method"], line["target"], line["status"]) for line in lines),
+                         sorted([(method, path.split("?")[0], status)
+                                 for method, path, _, _, status in known]
+                                + [("DELETE", "/v1/jobs/last", 404)]))
+        self.assertEqual({line["role"] for line in lines}, {"submit"})
+        self.assertEqual([line["job"] for line in lines if line["status"] == 422], ["abc"])
+        nobody = self.told("", 1)
+        self.assertEqual([(line["method"], line["target"], line["status"]) for line in nobody],
+                         [("PATCH", "/v1/jobs/%zz", 400)])
+
+    def test_a_body_that_grows(self):
+        """Its length is not announced, so it is refused while it comes."""
+        def pieces():
+            for _ in range(17):
+                yield b" " * (1 << 20)
+        connection = http.client.HTTPConnection("127.0.0.1", self.daemon.port, timeout=20 * PATIENCE)
+        headers = {**self.KIND, "Authorization": "Bearer " + token_of("carol")}
+        connection.request("POST", "/v1/jobs", pieces(), headers, encode_chunked=True)
+        self.assertEqual(connection.getresponse().status, 413)
+        connection.close()
+        line = self.told("carol", 1)[0]
+        self.assertEqual((line["method"], line["target"], line["status"]),
+                         ("POST", "/v1/jobs", 413))
+
+
 class Refusals(TokenTest):
     access = {"require_token": True}
 

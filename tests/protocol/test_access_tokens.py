@@ -236,12 +236,20 @@ class Reload(unittest.TestCase):
         self.assertIn("line 3: NAME:ROLE:SHA256", log)
         self.assertNotIn("secret", log)
         self.assertIn("token", self.daemon.client().get("/readyz").json()["warnings"][0])
+        self.assertEqual(self.metrics(), {"talus_tokens": 4, "talus_tokens_stale": 1})
         self.assertEqual([line["outcome"] for line in audit_lines(self.daemon)
                           if line.get("action") == "reload"], ["kept"])
         write_tokens(self.daemon.tokens, token_lines({"alice": "admin"}))
         reload(self.daemon)
         self.assertEqual(self.daemon.client().get("/readyz").json()["warnings"], [])
+        self.assertEqual(self.metrics(), {"talus_tokens": 1, "talus_tokens_stale": 0})
         self.assertEqual(self.client("bob").get("/v1/jobs").status, 401)
+
+    def metrics(self):
+        """What /metrics says of tokens."""
+        lines = self.client("alice").get("/metrics").body.decode().splitlines()
+        return {name: float(value) for name, value in (line.split() for line in lines
+                                                       if line.startswith("talus_tokens"))}
 
     def test_reloads_under_load(self):
         """Requests by a token that stays never fail while others come and go."""

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """The life of a job over HTTP: submit, read, wait, cancel, resume, delete."""
+import os
 import re
 import threading
 import time
@@ -438,6 +439,21 @@ class Ends(DaemonTest):
         done = self.client.finish(job["id"], 40)
         self.assertEqual(done["state"], "failed")
         self.assertIn(done["reason"], ("memory_limit", "crashed"))
+
+    def test_results_that_would_not_fit(self):
+        """The answer says in numbers what is needed and what is free."""
+        needed = 10 ** 17
+        scene = fake_scene({"disk_bytes": needed})
+        study = {"name": "large", "scene": scene, "metrics": ["wall_seconds"],
+                 "design": {"list": {"rows": [{"/duration": 1}, {"/duration": 2}]}}}
+        space = os.statvfs(self.daemon.state)
+        for path, body, count in (("/v1/jobs", {"scene": scene}, 1), ("/v1/studies", study, 2)):
+            with self.subTest(path=path):
+                problem = self.assert_problem(self.client.post(path, body), 507)
+                self.assertEqual(problem["needed_bytes"], needed * count)
+                self.assertGreater(problem["free_bytes"], 0)
+                self.assertLess(problem["free_bytes"], space.f_blocks * space.f_frsize)
+        self.assertEqual(self.client.post("/v1/forecast", {"scene": scene}).status, 200)
 
     def test_disk_limit(self):
         for directive in ({"frame_bytes": 3_000_000}, {"frame_bytes": 300_000, "frames": 50, "rows": 50,
