@@ -11,8 +11,9 @@
 
 #include <math.h>
 
-/* Shorter remainders than this share of a step are given to the last step. */
-#define REMAINDER 1e-9
+/* Shorter remainders than this share of a step are given to the last step: what the sum of many
+ * thousand fixed steps has lost to rounding is no step of its own. */
+#define REMAINDER 1e-4
 /* Automatic steps share the remainder among this many last ones: walls take impulses that do not
  * shrink with the step, so a very short last step would read as a peak of force. */
 #define LAST_STEPS 10
@@ -65,7 +66,7 @@ void run_choose_time_step(struct run *run)
             run_critical_time_step(run, run->signal_speed, run->materials_present);
     const double fixed = run->scene.solver.time_step;
     double step = fixed > 0 ? fixed : run->scene.solver.courant * run->critical_time_step;
-    const double count = ceil(remaining / step * (1 - REMAINDER));
+    const double count = ceil(remaining / step - REMAINDER);
     if (count <= 1)
         step = fmax(remaining, 0);
     else if (fixed <= 0 && count <= LAST_STEPS)

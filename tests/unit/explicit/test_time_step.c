@@ -119,12 +119,37 @@ static void test_what_has_left_does_not_count(void **state)
     talus_simulation_destroy(simulation);
 }
 
+/* 12,300 fixed steps sum up to a little less than the duration: no step is made of the rest. */
+static void test_rounding_makes_no_step(void **state)
+{
+    (void)state;
+    struct simulation_fixture fixture;
+    struct talus_simulation_state now;
+    struct talus_error error = {0};
+    simulation_fixture_init(&fixture, 2, CELL, (const int64_t[3]){8, 8, 1});
+    const size_t gel =
+        simulation_fixture_add_material(&fixture, "linear_elastic", soft, LENGTH(soft));
+    simulation_fixture_add_box(&fixture, gel, (const double[3]){0.4, 0.4, 0},
+                               (const double[3]){0.5, 0.5, 0}, 1);
+    fixture.scene.solver.time_step = 1e-5;
+    fixture.scene.duration = 0.123;
+    struct talus_simulation *simulation = simulation_fixture_start(&fixture, 1);
+    do {
+        assert_int_equal(talus_simulation_step(simulation, &error), TALUS_OK);
+        talus_simulation_get_state(simulation, &now);
+    } while (!now.finished);
+    assert_int_equal(now.step, 12300);
+    assert_true(now.time == 0.123);
+    talus_simulation_destroy(simulation);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_speeds_are_of_the_same_particle),
         cmocka_unit_test(test_collision_is_stable),
         cmocka_unit_test(test_what_has_left_does_not_count),
+        cmocka_unit_test(test_rounding_makes_no_step),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
