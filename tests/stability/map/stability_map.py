@@ -22,7 +22,8 @@ import threading
 
 import numpy
 
-SHAPES = ["linear", "gimp", "gimp_scaled", "cpdi", "cpdi_hybrid", "bspline2", "bspline3"]
+SHAPES = ["linear", "gimp", "gimp_scaled", "cpdi", "cpdi_hybrid", "bspline2", "bspline3", "quadratic"]
+HALVES_CELLS = ["quadratic"]  # the solver's cells are half as wide as those of the scene
 TRANSFERS = ["flip", "pic", "apic"]
 ORDERINGS = ["modified_last", "first", "last"]
 ANTI_LOCKING = {
@@ -41,6 +42,7 @@ GROWTH = 1.25  # of the energy from the first third to the last: 2e-4 a step is 
 RESOLUTION = 0.03  # of the bisection, relative
 HINT = 1.1
 LOWEST, HIGHEST = 0.01, 4.0
+REFUSED = "refused"  # in place of a Courant number: the scene is not accepted
 CELL = 0.1
 DENSITY = 1000.0
 STIFFNESS = 1e6
@@ -159,14 +161,19 @@ def rows_of(family):
     hints = {}
     rows = []
     for name, method in family:
-        try:
-            for body in BODIES:
+        found = []
+        reasons = set()
+        for body in BODIES:
+            try:
                 hints[body] = largest_courant(method, body, hints.get(body))
-            found = [hints[body] for body in BODIES]
-            rows.append(list(name) + [f"{value:.3f}" for value in found] + [f"{min(found):.3f}"])
-        except Refused as refusal:
-            rows.append(list(name) + ["refused"] * (len(BODIES) + 1))
-            print(*name, refusal, file=sys.stderr)
+                found.append(f"{hints[body]:.3f}")
+            except Refused as refusal:
+                found.append(REFUSED)
+                reasons.add(str(refusal))
+        for reason in reasons:
+            print(*name, reason, file=sys.stderr)
+        taken = [value for value in found if value != REFUSED]
+        rows.append(list(name) + found + [min(taken, key=float, default=REFUSED)])
     return rows
 
 
@@ -189,7 +196,7 @@ def limit_of(rows):
     smallest = []
     for row in rows:
         inner = min(float(row[body]) for body in BODIES if body != "edge")
-        edge = float(row["edge"])
+        edge = 0.0 if row["edge"] == REFUSED else float(row["edge"])
         smallest.append(min(inner, edge) if edge > inner / 2 else inner)
     return min(smallest)
 
@@ -197,7 +204,7 @@ def limit_of(rows):
 def write_table(folder, path):
     """The map as the table that the solver is compiled with."""
     with open(folder / "stability-map.csv", newline="") as file:
-        rows = [row for row in csv.DictReader(file) if row["limit"] != "refused"]
+        rows = [row for row in csv.DictReader(file) if row["limit"] != REFUSED]
     families = {}
     for row in rows:
         family = families.setdefault((row["shape"], row["transfer"], row["stress_update"]), {})
@@ -206,10 +213,12 @@ def write_table(folder, path):
         file.write("/* SPDX-License-Identifier: Apache-2.0 */\n"
                    "/* Written by tests/stability/map/stability_map.py --table: do not edit.\n"
                    " * COURANT_LIMIT(shape, transfer, ordering, anti-locking none, cell, node, "
-                   "hybrid) */\n")
+                   "hybrid),\n * c dt over the width of the solver's cells */\n")
         for (shape, transfer, ordering), family in families.items():
             plain = limit_of(family["none"])
-            found = [limit_of(family[name]) if name in family else plain for name in CONTROLS]
+            scale = 2 if shape in HALVES_CELLS else 1
+            found = [scale * (limit_of(family[name]) if name in family else plain)
+                     for name in CONTROLS]
             file.write(f"COURANT_LIMIT({shape}, {transfer}, {ordering.upper()}, "
                        + ", ".join(f"{value:.3f}" for value in found) + ")\n")
 
@@ -228,10 +237,11 @@ def draw(folder):
     values = numpy.full((len(names), len(columns)), numpy.nan)
     for row in rows:
         for body in BODIES:
-            if row[body] != "refused":
+            if row[body] != REFUSED:
                 values[names.index((row["shape"], row["transfer"], row["stress_update"])),
                        columns.index((row["anti_locking"], body))] = float(row[body])
     figure, axis = plt.subplots(figsize=(13, 0.22 * len(names) + 2))
+    axis.set_facecolor("lightgrey")  # what is refused
     picture = axis.imshow(values, aspect="auto", cmap="viridis", vmin=0, vmax=2)
     axis.set_yticks(range(len(names)), [", ".join(name) for name in names], fontsize=7)
     axis.set_xticks(range(len(columns)), [f"{locking}: {body}" for locking, body in columns],
@@ -240,9 +250,11 @@ def draw(folder):
         if numpy.isfinite(value):
             axis.text(x, y, f"{value:.2f}", ha="center", va="center", fontsize=5,
                       color="white" if value < 1.2 else "black")
-    figure.colorbar(picture, label="largest stable Courant number c dt / h")
+    figure.colorbar(picture, label="largest stable Courant number c dt / h (grey: refused)")
     figure.tight_layout()
-    figure.savefig(folder / "stability-map.svg", metadata={"Date": None})
+    path = folder / "stability-map.svg"
+    figure.savefig(path, metadata={"Date": None})
+    path.write_text("".join(f"{line.rstrip()}\n" for line in path.read_text().splitlines()))
 
 
 def main():

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""The stability map as study files for the service: one a body, a bisection of the step for each
-method.
+"""The stability map as study files for the service: one a body (two where quadratic elements are
+taken), a bisection of the step for each method.
 
     stability_map_studies.py FOLDER [--check]
 
@@ -54,14 +54,13 @@ def scene(body):
     return made, energy
 
 
-def study(body):
+def study(name, body, shapes, transfers, anti_locking):
     base, energy = scene(body)
-    locking = [{"label": label, "value": keys or {"control": "none"}}
-               for label, keys in stability_map.ANTI_LOCKING.items()]
-    return {"name": f"stability map: {body}", "scene": base,
+    locking = [{"label": label, "value": stability_map.ANTI_LOCKING[label] or {"control": "none"}}
+               for label in anti_locking]
+    return {"name": f"stability map: {name}", "scene": base,
             "design": {"bisect": {
-                "for_each": {"parameters": {"shape": stability_map.SHAPES,
-                                            "transfer": stability_map.TRANSFERS,
+                "for_each": {"parameters": {"shape": shapes, "transfer": transfers,
                                             "stress_update": stability_map.ORDERINGS,
                                             "anti_locking": locking},
                              "set": {f"/solver/{key}": key for key in stability_map.COLUMNS[:4]}},
@@ -70,13 +69,26 @@ def study(body):
             "metrics": ["probe.total.max", "steps"]}
 
 
+def studies():
+    """Quadratic elements have studies of their own: they are refused beside the edge of cells, with
+    anti-locking, and with slopes."""
+    whole = [shape for shape in stability_map.SHAPES if shape not in stability_map.HALVES_CELLS]
+    made = {body: study(body, body, whole, stability_map.TRANSFERS, list(stability_map.ANTI_LOCKING))
+            for body in stability_map.BODIES}
+    for shape in stability_map.HALVES_CELLS:
+        for body in stability_map.BODIES:
+            if body != "edge":
+                made[f"{shape}-{body}"] = study(f"{shape}, {body}", body, [shape], ["flip", "pic"],
+                                                ["none"])
+    return {f"stability-map-{name}.json": made[name] for name in made}
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("folder", type=pathlib.Path)
     parser.add_argument("--check", action="store_true", help="fails where a file would be another")
     arguments = parser.parse_args()
-    study_file.write_or_check(arguments.folder, {f"stability-map-{body}.json": study(body)
-                                                 for body in stability_map.BODIES}, arguments.check)
+    study_file.write_or_check(arguments.folder, studies(), arguments.check)
 
 
 if __name__ == "__main__":

@@ -2,6 +2,7 @@
 /* What a scene costs, steps that are too large, and the end of a run. */
 #include "shapes/shape.h"
 #include "simulation_fixture.h"
+#include "transfers/velocity_transfer.h"
 
 /* K = 2 MPa, G = 1.5 MPa at 1000 kg/m^3: waves of sqrt(4000) m/s. */
 static const struct setting elastic[] = {
@@ -112,6 +113,44 @@ static void test_over_critical_steps_are_refused(void **state)
     assert_int_equal(talus_simulation_estimate(&fixture.scene, &estimate, &error), TALUS_OK);
 }
 
+/* The limit is that of the method, from the stability map; quadratic elements work in half cells.
+ */
+static void test_the_limit_is_that_of_the_method(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *shape, *transfer;
+        enum talus_stress_update update;
+        double limit, cell;
+    } methods[] = {
+        {"bspline2", "flip", TALUS_STRESS_MODIFIED_LAST, 1.45, 0.1},
+        {"bspline2", "apic", TALUS_STRESS_MODIFIED_LAST, 1.005, 0.1},
+        {"quadratic", "flip", TALUS_STRESS_MODIFIED_LAST, 0.654, 0.05},
+        {"quadratic", "flip", TALUS_STRESS_LAST, 0.43, 0.05},
+        {"quadratic", "pic", TALUS_STRESS_FIRST, 0.624, 0.05},
+    };
+    for (size_t index = 0; index < LENGTH(methods); index++) {
+        struct simulation_fixture fixture;
+        struct talus_estimate estimate;
+        struct talus_error error = {0};
+        build(&fixture, 0);
+        struct talus_solver_options *solver = &fixture.scene.solver;
+        while (strcmp(shape_table[solver->shape_index]->name, methods[index].shape) != 0)
+            solver->shape_index++;
+        while (strcmp(transfer_table[solver->transfer_index]->name, methods[index].transfer) != 0)
+            solver->transfer_index++;
+        solver->stress_update = methods[index].update;
+        const double critical = methods[index].limit * methods[index].cell / sqrt(4000);
+        solver->time_step = 0.999 * critical;
+        assert_int_equal(talus_simulation_estimate(&fixture.scene, &estimate, &error), TALUS_OK);
+        assert_close(estimate.critical_time_step, critical, 1e-12, critical);
+        solver->time_step = 1.001 * critical;
+        assert_int_equal(talus_simulation_estimate(&fixture.scene, &estimate, &error),
+                         TALUS_INVALID);
+        assert_string_equal(error.code, "over_critical");
+    }
+}
+
 /* A fixed step that becomes critical because the body gets fast: one warning, no end. */
 static void test_warned_once_when_it_becomes_critical(void **state)
 {
@@ -204,6 +243,7 @@ int main(void)
         cmocka_unit_test(test_critical_step),
         cmocka_unit_test(test_memory),
         cmocka_unit_test(test_over_critical_steps_are_refused),
+        cmocka_unit_test(test_the_limit_is_that_of_the_method),
         cmocka_unit_test(test_warned_once_when_it_becomes_critical),
         cmocka_unit_test(test_ends_at_duration),
         cmocka_unit_test(test_huge_scenes_are_estimated_without_memory),
