@@ -62,6 +62,7 @@ enum talus_status identifier_next(struct identifier_source *source,
     if (now > source->last_milliseconds) {
         source->last_milliseconds = now;
         memcpy(source->random, random, sizeof random);
+        source->random[8] &= 0xBF; /* the last 15 bits begin in their lower half */
     } else {
         random_increment(source->random);
     }

@@ -13,7 +13,8 @@
 
 enum { IDENTIFIER_LENGTH = 26 };
 
-/* Makes identifiers that grow even within one millisecond or when the clock steps back. */
+/* Makes identifiers that grow even within one millisecond or when the clock steps back; within one
+ * millisecond their last 15 bits do, for 16,384 of them. */
 struct identifier_source {
     pthread_mutex_t mutex;
     int64_t last_milliseconds;

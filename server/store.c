@@ -2,6 +2,7 @@
 #include "store.h"
 
 #include "store_internal.h"
+#include "text.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -12,18 +13,30 @@ enum talus_status store_failure(sqlite3 *database, struct talus_error *error)
                            sqlite3_errmsg(database));
 }
 
+/* Before the text of every statement that is kept: virtual tables keep statements of their own. */
+static const char mark[] = "/* kept */ ";
+
+static bool statement_kept(sqlite3_stmt *statement)
+{
+    return strncmp(sqlite3_sql(statement), mark, sizeof mark - 1) == 0;
+}
+
 sqlite3_stmt *store_prepare(sqlite3 *database, const char *sql, struct talus_error *error)
 {
     sqlite3_stmt *statement = NULL;
     while ((statement = sqlite3_next_stmt(database, statement)) != NULL) {
-        if (sqlite3_stmt_busy(statement) == 0 && strcmp(sqlite3_sql(statement), sql) == 0)
+        if (statement_kept(statement) && sqlite3_stmt_busy(statement) == 0 &&
+            strcmp(sqlite3_sql(statement) + sizeof mark - 1, sql) == 0)
             return statement;
     }
-    if (sqlite3_prepare_v3(database, sql, -1, SQLITE_PREPARE_PERSISTENT, &statement, NULL) !=
-        SQLITE_OK) {
+    struct text marked = {0};
+    text_print(&marked, "%s%s", mark, sql);
+    if (marked.failed)
+        (void)talus_error_set(error, TALUS_MEMORY, "memory", "", "out of memory");
+    else if (sqlite3_prepare_v3(database, marked.data, -1, SQLITE_PREPARE_PERSISTENT, &statement,
+                                NULL) != SQLITE_OK)
         store_failure(database, error);
-        return NULL;
-    }
+    text_release(&marked);
     return statement;
 }
 
@@ -156,9 +169,13 @@ static bool connection_open(const char *path, sqlite3 **database)
 
 static void connection_close(sqlite3 *database)
 {
-    sqlite3_stmt *statement;
-    while (database != NULL && (statement = sqlite3_next_stmt(database, NULL)) != NULL)
-        (void)sqlite3_finalize(statement);
+    sqlite3_stmt *next = database == NULL ? NULL : sqlite3_next_stmt(database, NULL);
+    while (next != NULL) {
+        sqlite3_stmt *statement = next;
+        next = sqlite3_next_stmt(database, statement);
+        if (statement_kept(statement))
+            (void)sqlite3_finalize(statement);
+    }
     (void)sqlite3_close(database);
 }
 

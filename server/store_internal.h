@@ -21,6 +21,20 @@ struct store_write {
     struct store_write *next;
 };
 
+/* Statements' text for the number of a job in job_names: the milliseconds of its identifier, then
+ * its last 15 bits, which grow within a millisecond (identifier.h). So numbers sort as identifiers
+ * do. */
+#define STORE_NUMBER_DIGIT(id, place, shift)                                                       \
+    " | (instr('0123456789abcdefghjkmnpqrstvwxyz', substr(" id "," #place ",1)) - 1 << " #shift ")"
+/* clang-format off */
+#define STORE_NUMBER(id)                                                                           \
+    "(0" STORE_NUMBER_DIGIT(id, 1, 60) STORE_NUMBER_DIGIT(id, 2, 55)                               \
+    STORE_NUMBER_DIGIT(id, 3, 50) STORE_NUMBER_DIGIT(id, 4, 45) STORE_NUMBER_DIGIT(id, 5, 40)      \
+    STORE_NUMBER_DIGIT(id, 6, 35) STORE_NUMBER_DIGIT(id, 7, 30) STORE_NUMBER_DIGIT(id, 8, 25)      \
+    STORE_NUMBER_DIGIT(id, 9, 20) STORE_NUMBER_DIGIT(id, 10, 15) STORE_NUMBER_DIGIT(id, 24, 10)    \
+    STORE_NUMBER_DIGIT(id, 25, 5) STORE_NUMBER_DIGIT(id, 26, 0) ")"
+/* clang-format on */
+
 struct store {
     sqlite3 *writer, *reader;
     pthread_mutex_t mutex, reader_mutex; /* of the queue; of `reader` */

@@ -8,37 +8,89 @@
 #include <stdio.h>
 #include <string.h>
 
-/* Rows come in the order of an index, so that a page costs what is on it: of the jobs themselves,
- * or of those with the label, newest first. */
+/* What a list walks over. Rows come in the order of an index, so that a page costs what is on it:
+ * of the jobs themselves, of those with the label, or of their names, newest first. */
+struct walk {
+    const char *from;  /* what is walked over, and the condition that goes with it */
+    const char *job;   /* the job's identifier there */
+    const char *order; /* what sorts as identifiers do */
+    const char *before;
+    size_t label_first; /* the labels from here on are asked for one by one */
+    bool joined;        /* something else than the jobs is walked over */
+};
+
+static const struct walk walk_jobs = {
+    .from = " FROM jobs WHERE 1", .job = "id", .order = "id", .before = " AND id < :before"};
+static const struct walk walk_label = {.from =
+                                           " FROM job_labels AS tag CROSS JOIN jobs ON jobs.id = "
+                                           "tag.job WHERE tag.key = :key0 AND tag.value = :value0",
+                                       .job = "tag.job",
+                                       .order = "tag.job",
+                                       .before = " AND tag.job < :before",
+                                       .label_first = 1,
+                                       .joined = true};
+/* Of a text with less than three characters; the longer ones have an index. */
+static const struct walk walk_names = {
+    .from = " FROM job_names AS tag CROSS JOIN jobs ON jobs.id = "
+            "tag.job WHERE instr(tag.text, lower(:text)) > 0",
+    .job = "tag.job",
+    .order = "tag.number",
+    .before = " AND tag.number <= " STORE_NUMBER(":before") " AND tag.job < :before",
+    .joined = true};
+/* The index of trigrams does not tell some letters apart that are different to us. */
+static const struct walk walk_parts = {
+    .from = " FROM job_name_parts AS part CROSS JOIN job_names AS tag ON tag.number = part.rowid"
+            " CROSS JOIN jobs ON jobs.id = tag.job"
+            " WHERE part.text MATCH :parts AND instr(tag.text, lower(:text)) > 0",
+    .job = "tag.job",
+    .order = "part.rowid",
+    .before = " AND part.rowid <= " STORE_NUMBER(":before") " AND tag.job < :before",
+    .joined = true};
+
+static size_t character_count(const char *text)
+{
+    size_t count = 0;
+    for (; *text != '\0'; text++)
+        count += ((unsigned char)*text & 0xC0) != 0x80;
+    return count;
+}
+
+static const struct walk *walk_choose(const struct store_filter *filter)
+{
+    /* A study has few jobs. */
+    if (filter->text != NULL && filter->study == NULL && !filter->by_queue)
+        return character_count(filter->text) < 3 ? &walk_names : &walk_parts;
+    return filter->label_count > 0 ? &walk_label : &walk_jobs;
+}
+
 static void filter_sql(const struct store_filter *filter, struct text *sql)
 {
-    bool by_label = filter->label_count > 0;
-    text_print(sql, "%s FROM %s", store_row_select,
-               by_label ? "job_labels AS tag CROSS JOIN jobs ON jobs.id = tag.job"
-                          " WHERE tag.key = :key0 AND tag.value = :value0"
-                        : "jobs WHERE 1");
-    for (size_t index = 1; index < filter->label_count; index++)
+    const struct walk *walk = walk_choose(filter);
+    text_print(sql, "%s%s", store_row_select, walk->from);
+    for (size_t index = walk->label_first; index < filter->label_count; index++)
         text_print(sql,
-                   " AND EXISTS (SELECT 1 FROM job_labels AS other WHERE other.job = tag.job"
+                   " AND EXISTS (SELECT 1 FROM job_labels AS other WHERE other.job = %s"
                    " AND other.key = :key%zu AND other.value = :value%zu)",
-                   index, index);
+                   walk->job, index, index);
     if (!filter->every)
         text_add_string(sql, " AND deleting = 0");
-    if (filter->text != NULL)
-        text_add_string(sql, " AND instr(lower(name), lower(:text)) > 0");
-    if (filter->state != JOB_STATE_COUNT)
-        text_add_string(sql, by_label ? " AND EXISTS (SELECT 1 FROM jobs AS same INDEXED BY"
-                                        " jobs_by_state_newest WHERE same.id = tag.job"
-                                        " AND same.state = :state)"
-                                      : " AND state = :state");
+    if (filter->text != NULL && walk != &walk_parts && walk != &walk_names)
+        text_add_string(sql, " AND instr(lower(jobs.name), lower(:text)) > 0");
+    if (filter->state != JOB_STATE_COUNT && walk->joined)
+        text_print(sql,
+                   " AND EXISTS (SELECT 1 FROM jobs AS same INDEXED BY jobs_by_state_newest"
+                   " WHERE same.id = %s AND same.state = :state)",
+                   walk->job);
+    else if (filter->state != JOB_STATE_COUNT)
+        text_add_string(sql, " AND state = :state");
     if (filter->study != NULL)
         text_add_string(sql, " AND study = :study");
     if (filter->before != NULL)
-        text_print(sql, " AND %s < :before", by_label ? "tag.job" : "id");
+        text_add_string(sql, walk->before);
     if (filter->by_queue)
         text_add_string(sql, " ORDER BY priority DESC, id");
     else
-        text_print(sql, " ORDER BY %s DESC", by_label ? "tag.job" : "id");
+        text_print(sql, " ORDER BY %s DESC", walk->order);
     if (filter->limit > 0)
         text_add_string(sql, " LIMIT :limit");
 }
@@ -59,6 +111,23 @@ static void filter_bind_labels(sqlite3_stmt *statement, const struct store_filte
         filter_bind_text(statement, key, filter->labels[index].key);
         filter_bind_text(statement, value, filter->labels[index].value);
     }
+}
+
+/* The text as a phrase of the index of trigrams; false without memory. */
+static bool filter_bind_parts(sqlite3_stmt *statement, const char *text)
+{
+    struct text phrase = {0};
+    int index = sqlite3_bind_parameter_index(statement, ":parts");
+    if (index == 0)
+        return true;
+    text_add_string(&phrase, "\"");
+    for (; *text != '\0'; text++)
+        text_add(&phrase, *text == '"' ? "\"\"" : text, *text == '"' ? 2 : 1);
+    text_add_string(&phrase, "\"");
+    bool good = !phrase.failed &&
+                sqlite3_bind_text(statement, index, phrase.data, -1, SQLITE_TRANSIENT) == SQLITE_OK;
+    text_release(&phrase);
+    return good;
 }
 
 static void filter_bind_integer(sqlite3_stmt *statement, const char *name, int64_t value)
@@ -101,7 +170,9 @@ enum talus_status store_job_list(struct store *store, const struct store_filter 
         filter_bind_text(statement, ":text", filter->text);
         filter_bind_text(statement, ":study", filter->study);
         filter_bind_text(statement, ":before", filter->before);
-        status = list_rows(store->reader, statement, visit, context, error);
+        status = filter_bind_parts(statement, filter->text)
+                     ? list_rows(store->reader, statement, visit, context, error)
+                     : talus_error_set(error, TALUS_MEMORY, "memory", "", "out of memory");
         store_release(statement);
     }
     (void)pthread_mutex_unlock(&store->reader_mutex);

@@ -41,6 +41,33 @@ static const char *const parts[] = {
     " WHEN new.labels IS NOT old.labels BEGIN"
     " DELETE FROM job_labels WHERE job = new.id;"
     " INSERT INTO job_labels SELECT key, value, new.id FROM json_each(new.labels); END",
+    /* What lists by a part of the name walk over: names in lower case (of ASCII letters, as SQLite
+     * has it), newest last, and an index of their trigrams. */
+    "CREATE TABLE IF NOT EXISTS job_names (number INTEGER PRIMARY KEY, text TEXT NOT NULL,"
+    " job TEXT NOT NULL UNIQUE REFERENCES jobs (id) ON DELETE CASCADE)",
+    "CREATE VIRTUAL TABLE IF NOT EXISTS job_name_parts USING fts5 (text, content = 'job_names',"
+    " content_rowid = 'number', tokenize = 'trigram', columnsize = 0)",
+    "CREATE TRIGGER IF NOT EXISTS job_name_parts_of_new AFTER INSERT ON job_names BEGIN"
+    " INSERT INTO job_name_parts (rowid, text) VALUES (new.number, new.text); END",
+    "CREATE TRIGGER IF NOT EXISTS job_name_parts_of_old AFTER DELETE ON job_names BEGIN"
+    " INSERT INTO job_name_parts (job_name_parts, rowid, text)"
+    " VALUES ('delete', old.number, old.text); END",
+    /* Takes names in. Identifiers of one millisecond that two machines made may want one number. */
+    "CREATE VIEW IF NOT EXISTS job_names_entrance AS SELECT id, name FROM jobs",
+    "CREATE TRIGGER IF NOT EXISTS job_names_enter INSTEAD OF INSERT ON job_names_entrance"
+    " WHEN new.name IS NOT NULL BEGIN"
+    " INSERT INTO job_names (number, text, job)"
+    " SELECT coalesce((SELECT taken.number + 1 FROM job_names AS taken"
+    " WHERE taken.number >= wanted.number AND EXISTS"
+    " (SELECT 1 FROM job_names AS same WHERE same.number = wanted.number) AND NOT EXISTS"
+    " (SELECT 1 FROM job_names AS next WHERE next.number = taken.number + 1)"
+    " ORDER BY taken.number LIMIT 1), wanted.number), lower(new.name), new.id"
+    " FROM (SELECT " STORE_NUMBER("new.id") " AS number) AS wanted; END",
+    "CREATE TRIGGER IF NOT EXISTS job_names_of_new AFTER INSERT ON jobs BEGIN"
+    " INSERT INTO job_names_entrance VALUES (new.id, new.name); END",
+    "CREATE TRIGGER IF NOT EXISTS job_names_of_changed AFTER UPDATE OF name ON jobs"
+    " WHEN new.name IS NOT old.name BEGIN DELETE FROM job_names WHERE job = new.id;"
+    " INSERT INTO job_names_entrance VALUES (new.id, new.name); END",
     "CREATE INDEX IF NOT EXISTS jobs_queued_by_owner ON jobs"
     " (state, owner, priority DESC, id, threads, deleting)",
     /* Of what may answer for another job of the same scene. */
@@ -94,9 +121,10 @@ static const char from_1[] = "INSERT INTO request_keys (key, owner, body, resour
                              "DROP TABLE idempotency;"
                              "UPDATE jobs SET owner = '' WHERE owner IS NULL;";
 
-/* What a database without the table of labels has not copied yet. */
+/* What a database without the tables of labels or names has not copied yet. */
 static const char labels_fill[] = "INSERT INTO job_labels SELECT label.key, label.value, jobs.id"
                                   " FROM jobs, json_each(jobs.labels) AS label";
+static const char names_fill[] = "INSERT INTO job_names_entrance SELECT id, name FROM jobs";
 
 static bool column_exists(sqlite3 *database, const char *table, const char *name, bool *exists)
 {
@@ -130,12 +158,15 @@ static bool jobs_prepare(sqlite3 *database)
 static bool tables_prepare(sqlite3 *database, int version)
 {
     struct text sql = {0};
-    bool labelled = false;
-    bool good = column_exists(database, "job_labels", "job", &labelled) && jobs_prepare(database);
+    bool labelled = false, named = false;
+    bool good = column_exists(database, "job_labels", "job", &labelled) &&
+                column_exists(database, "job_names", "job", &named) && jobs_prepare(database);
     for (size_t index = 0; good && index < sizeof parts / sizeof parts[0]; index++)
         good = store_execute(database, parts[index]);
     if (!labelled)
         good = good && store_execute(database, labels_fill);
+    if (!named)
+        good = good && store_execute(database, names_fill);
     if (version == 1)
         good = good && store_execute(database, from_1);
     text_print(&sql, "PRAGMA user_version = %d", SCHEMA_VERSION);

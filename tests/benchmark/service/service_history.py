@@ -64,7 +64,13 @@ def list_queries(client, count):
                "label, deep": [f"{q}&label={quote('campaign:c3')}" for q in deep[-20:] or [f"limit={PAGE}"]],
                "study (none)": [f"limit={PAGE}&study=none"],
                "text": [f"limit={PAGE}&text={quote('campaign')}"],
+               "text of few": [f"limit={PAGE}&text={quote(f'run {n} ')}" for n in range(10)],
                "text of none": [f"limit={PAGE}&text={quote('nowhere at all')}"],
+               "text of none, its parts in all": [f"limit={PAGE}&text={quote('of the of')}"],
+               "text of two letters": [f"limit={PAGE}&text=un"],
+               "text of two letters, of none": [f"limit={PAGE}&text=zz"],
+               "text and state": [f"limit={PAGE}&text=campaign&state=failed"],
+               "text, deep": [f"{q}&text=campaign" for q in deep[-20:] or [f"limit={PAGE}"]],
                "ids of 100": ["limit=100&fields=id,state"]}
     # What this build does not know yet is left out, not counted as an error.
     return {name: [f"/v1/jobs?{query}" for query in list_of] for name, list_of in queries.items()

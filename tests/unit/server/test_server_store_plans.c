@@ -14,12 +14,14 @@ static void job_add(struct store *store, int number)
 {
     struct talus_error error = {0};
     enum store_insert result;
-    char id[32], labels[64], existing[64];
+    char id[32], labels[64], name[32], existing[64];
     (void)snprintf(id, sizeof id, "j%03d", number);
     (void)snprintf(labels, sizeof labels, "{\"even\":\"%d\",\"n\":\"%d\"}", number % 2 == 0,
                    number);
     struct job job = fixture_job(id);
+    (void)snprintf(name, sizeof name, "Test %d", number);
     assert_int_equal(job_text_set(&job.labels, labels, &error), TALUS_OK);
+    assert_int_equal(job_text_set(&job.name, name, &error), TALUS_OK);
     job.state = number % 3 == 0 ? JOB_FAILED : JOB_SUCCEEDED;
     assert_int_equal(store_job_insert(store, &job, NULL, NULL, &result, existing, &error),
                      TALUS_OK);
@@ -73,6 +75,17 @@ static void test_lists_walk_over_indices(void **state)
     assert_int_equal(list_cheaply(store, filter), PAGE);
     filter = (struct store_filter){.state = JOB_QUEUED, .by_queue = true};
     assert_int_equal(list_cheaply(store, filter), 0);
+    filter = all;
+    filter.text = "test";
+    assert_int_equal(list_cheaply(store, filter), PAGE);
+    filter.before = "j030";
+    assert_int_equal(list_cheaply(store, filter), PAGE);
+    filter.text = "ST 7";
+    assert_int_equal(list_cheaply(store, filter), 1);
+    filter.text = "t 4";
+    assert_int_equal(list_cheaply(store, filter), 1);
+    filter.text = "te";
+    assert_int_equal(list_cheaply(store, filter), PAGE);
     filter = all;
     filter.labels[0] = (struct store_label){"even", "1"};
     filter.label_count = 1;
