@@ -57,11 +57,11 @@ static const char *const parts[] = {
     "CREATE TRIGGER IF NOT EXISTS job_names_enter INSTEAD OF INSERT ON job_names_entrance"
     " WHEN new.name IS NOT NULL BEGIN"
     " INSERT INTO job_names (number, text, job)"
-    " SELECT coalesce((SELECT taken.number + 1 FROM job_names AS taken"
-    " WHERE taken.number >= wanted.number AND EXISTS"
-    " (SELECT 1 FROM job_names AS same WHERE same.number = wanted.number) AND NOT EXISTS"
+    " SELECT CASE WHEN NOT EXISTS (SELECT 1 FROM job_names AS same WHERE same.number ="
+    " wanted.number) THEN wanted.number ELSE (SELECT taken.number + 1 FROM job_names AS taken"
+    " WHERE taken.number >= wanted.number AND NOT EXISTS"
     " (SELECT 1 FROM job_names AS next WHERE next.number = taken.number + 1)"
-    " ORDER BY taken.number LIMIT 1), wanted.number), lower(new.name), new.id"
+    " ORDER BY taken.number LIMIT 1) END, lower(new.name), new.id"
     " FROM (SELECT " STORE_NUMBER("new.id") " AS number) AS wanted; END",
     "CREATE TRIGGER IF NOT EXISTS job_names_of_new AFTER INSERT ON jobs BEGIN"
     " INSERT INTO job_names_entrance VALUES (new.id, new.name); END",
