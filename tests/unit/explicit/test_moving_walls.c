@@ -84,6 +84,8 @@ static void test_a_ram_takes_a_block_along(void **state)
         if (shape_table[shape]->may_lump_negative)
             continue; /* for small displacements only: test_quadratic.c */
         for (int order = 0; order < TALUS_STRESS_UPDATE_COUNT; order++) {
+            if (order == TALUS_STRESS_LAST && shape > 1)
+                continue; /* ten times the steps, and the wall is the same for every shape */
             struct simulation_fixture fixture;
             build(&fixture);
             move(simulation_fixture_add_plane(&fixture, "ram", 0, 0.43, 1, "velocity", 0), 1,
