@@ -5,6 +5,7 @@
 #include "service.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <string.h>
 #include <sys/statvfs.h>
 
@@ -26,11 +27,13 @@ const struct json_field admission_key_headers[] = {
      .meaning = "the same key and an equal body make one thing, however often they are sent"},
     OPERATION_END};
 
-bool admission_key(struct request *request, const json_t *body, struct store_key *key,
-                   char checksum[CHECKSUM_SIZE])
+const char *const admission_made_headers[] = {"ETag", "Location", "Idempotent-Replayed", NULL};
+
+bool admission_key(struct request *request, const json_t *body, struct admission *admission)
 {
     struct talus_error error = {0};
     const char *value = request_header(request, "Idempotency-Key");
+    *admission = (struct admission){.result = STORE_INSERTED};
     if (value == NULL)
         return true;
     if (value[0] == '\0' || strlen(value) > KEY_BYTES_MAX) {
@@ -38,14 +41,29 @@ bool admission_key(struct request *request, const json_t *body, struct store_key
                       "an Idempotency-Key has 1 to %d bytes", KEY_BYTES_MAX);
         return false;
     }
-    if (checksum_json(body, checksum, &error) != TALUS_OK) {
-        reply_error(&request->reply, request->raw, &error);
-        return false;
-    }
-    key->owner = request->principal.name;
-    key->key = value;
-    key->body = checksum;
-    return true;
+    admission->key = (struct store_key){
+        .owner = request->principal.name, .key = value, .body = admission->checksum};
+    if (checksum_json(body, admission->checksum, &error) == TALUS_OK &&
+        store_key_find(request->service->store, &admission->key, &admission->result,
+                       admission->existing, &error) == TALUS_OK)
+        return true;
+    reply_error(&request->reply, request->raw, &error);
+    return false;
+}
+
+void admission_other_body(struct request *request)
+{
+    reply_problem(&request->reply, MHD_HTTP_UNPROCESSABLE_CONTENT, "idempotency_key", request->raw,
+                  NULL, "this Idempotency-Key came with another body before");
+}
+
+void admission_made(struct request *request, const char *path, const char *id, bool replayed)
+{
+    char location[128];
+    (void)snprintf(location, sizeof location, "%s%s", path, id);
+    reply_header(&request->reply, MHD_HTTP_HEADER_LOCATION, location);
+    if (replayed)
+        reply_header(&request->reply, "Idempotent-Replayed", "true");
 }
 
 bool admission_disk(struct request *request, double bytes)

@@ -9,70 +9,51 @@
 #include "studies/study_life.h"
 #include "studies/study_request.h"
 
-#include <stdio.h>
-
-static void reply_study(struct request *request, const struct study *study, bool replayed)
-{
-    char location[128];
-    (void)snprintf(location, sizeof location, "/v1/studies/%s", study->id);
-    study_reply(request, MHD_HTTP_CREATED, study);
-    reply_header(&request->reply, MHD_HTTP_HEADER_LOCATION, location);
-    if (replayed)
-        reply_header(&request->reply, "Idempotent-Replayed", "true");
-}
-
 static void reply_stored(struct request *request, const char *id, bool replayed)
 {
     struct talus_error error = {0};
     struct study study = {0};
-    if (study_store_read(request->service->store, id, true, &study, &error) == TALUS_OK)
-        reply_study(request, &study, replayed);
-    else
+    if (study_store_read(request->service->store, id, true, &study, &error) == TALUS_OK) {
+        study_reply(request, MHD_HTTP_CREATED, &study);
+        admission_made(request, "/v1/studies/", id, replayed);
+    } else {
         reply_error(&request->reply, request->raw, &error);
+    }
     study_release(&study);
 }
 
 /* Answers for a key that is known. */
-static void reply_known(struct request *request, enum store_insert known, const char *existing)
+static void reply_known(struct request *request, const struct admission *admission)
 {
-    if (known == STORE_OTHER_BODY)
-        reply_problem(&request->reply, MHD_HTTP_UNPROCESSABLE_CONTENT, "idempotency_key",
-                      request->raw, NULL, "this Idempotency-Key came with another body before");
+    if (admission->result == STORE_OTHER_BODY)
+        admission_other_body(request);
     else
-        reply_stored(request, existing, true);
+        reply_stored(request, admission->existing, true);
 }
 
 static void submit(struct request *request, const json_t *body, struct study_draft *draft)
 {
     struct service *service = request->service;
     struct talus_error error = {0};
-    struct store_key key = {0};
-    char checksum[CHECKSUM_SIZE], existing[64];
-    enum store_insert known = STORE_INSERTED;
-    if (!admission_key(request, body, &key, checksum))
+    struct admission admission;
+    const struct store_key *key = &admission.key;
+    if (!admission_key(request, body, &admission))
         return;
-    if (key.key != NULL &&
-        store_key_find(service->store, &key, &known, existing, &error) != TALUS_OK) {
-        reply_error(&request->reply, request->raw, &error);
-        return;
-    }
-    if (known != STORE_INSERTED) {
-        reply_known(request, known, existing);
+    if (admission.result != STORE_INSERTED) {
+        reply_known(request, &admission);
         return;
     }
     if (!study_request_check(request, body, draft) || !admission_disk(request, draft->totals.disk))
         return;
     if (job_text_set(&draft->study.owner, request->principal.name, &error) != TALUS_OK ||
-        study_create(service, &draft->study, draft->rows, key.key == NULL ? NULL : &key, &known,
-                     existing, &error) != TALUS_OK)
+        study_create(service, &draft->study, draft->rows, key->key == NULL ? NULL : key,
+                     &admission.result, admission.existing, &error) != TALUS_OK)
         reply_error(&request->reply, request->raw, &error);
-    else if (known != STORE_INSERTED)
-        reply_known(request, known, existing);
+    else if (admission.result != STORE_INSERTED)
+        reply_known(request, &admission);
     else
         reply_stored(request, draft->study.id, false);
 }
-
-static const char *const created_headers[] = {"ETag", "Location", "Idempotent-Replayed", NULL};
 
 const struct operation operation_study_submit = {
     .summary = "Submits a study: a set of jobs from one scene",
@@ -82,7 +63,7 @@ const struct operation operation_study_submit = {
         (const struct response[]){{.status = 201,
                                    .type = "application/json",
                                    .schema = &schema_study,
-                                   .headers = created_headers,
+                                   .headers = admission_made_headers,
                                    .meaning = "the study is on disk; all its rows are checked"},
                                   RESPONSE_END},
     .problems = (const unsigned int[]){507, 0},

@@ -82,12 +82,8 @@ static bool submission_check(struct request *request, struct submission *submiss
 static void reply_job(struct request *request, unsigned int status, const struct job *job,
                       bool replayed)
 {
-    char location[128];
-    (void)snprintf(location, sizeof location, "/v1/jobs/%s", job->id);
     job_reply(request, status, job);
-    reply_header(&request->reply, MHD_HTTP_HEADER_LOCATION, location);
-    if (replayed)
-        reply_header(&request->reply, "Idempotent-Replayed", "true");
+    admission_made(request, "/v1/jobs/", job->id, replayed);
 }
 
 static void reply_too_many(struct request *request, const char *code, const char *detail)
@@ -102,14 +98,14 @@ static void reply_too_many(struct request *request, const char *code, const char
     reply_header(&request->reply, MHD_HTTP_HEADER_RETRY_AFTER, seconds);
 }
 
-/* Answers for a key that is known. */
-static void reply_known(struct request *request, enum store_insert known, const char *existing)
+/* Answers for a key that is known, or a queue that is full. */
+static void reply_known(struct request *request, const struct admission *admission)
 {
+    const enum store_insert known = admission->result;
     struct talus_error error = {0};
     struct job job = {0};
     if (known == STORE_OTHER_BODY) {
-        reply_problem(&request->reply, MHD_HTTP_UNPROCESSABLE_CONTENT, "idempotency_key",
-                      request->raw, NULL, "this Idempotency-Key came with another body before");
+        admission_other_body(request);
     } else if (known == STORE_QUEUE_FULL) {
         reply_too_many(request, "queue_full", "as many jobs are queued as the daemon takes");
     } else if (known == STORE_QUOTA_QUEUED) {
@@ -118,7 +114,8 @@ static void reply_known(struct request *request, enum store_insert known, const 
         reply_too_many(request, "quota",
                        "with this job's results yours would take more disk than you may have; "
                        "delete some");
-    } else if (store_job_read(request->service->store, existing, &job, &error) == TALUS_OK) {
+    } else if (store_job_read(request->service->store, admission->existing, &job, &error) ==
+               TALUS_OK) {
         reply_job(request, MHD_HTTP_CREATED, &job, true);
         job_release(&job);
     } else {
@@ -158,19 +155,13 @@ static void submit(struct request *request, struct submission *submission)
 {
     struct service *service = request->service;
     struct talus_error error = {0};
-    struct store_key key = {0};
-    char checksum[CHECKSUM_SIZE], existing[64];
-    enum store_insert known = STORE_INSERTED;
+    struct admission admission;
+    const struct store_key *key = &admission.key;
     submission->body = body_json(request);
-    if (submission->body == NULL || !admission_key(request, submission->body, &key, checksum))
+    if (submission->body == NULL || !admission_key(request, submission->body, &admission))
         return;
-    if (key.key != NULL &&
-        store_key_find(service->store, &key, &known, existing, &error) != TALUS_OK) {
-        reply_error(&request->reply, request->raw, &error);
-        return;
-    }
-    if (known != STORE_INSERTED) {
-        reply_known(request, known, existing);
+    if (admission.result != STORE_INSERTED) {
+        reply_known(request, &admission);
         return;
     }
     if (!submission_check(request, submission) || reply_reused(request, submission) ||
@@ -178,16 +169,14 @@ static void submit(struct request *request, struct submission *submission)
         return;
     const json_t *effective = json_object_get(submission->answer, "effective");
     if (job_text_set(&submission->job.owner, request->principal.name, &error) != TALUS_OK ||
-        jobs_create(service, &submission->job, effective, key.key == NULL ? NULL : &key, &known,
-                    existing, &error) != TALUS_OK)
+        jobs_create(service, &submission->job, effective, key->key == NULL ? NULL : key,
+                    &admission.result, admission.existing, &error) != TALUS_OK)
         reply_error(&request->reply, request->raw, &error);
-    else if (known != STORE_INSERTED)
-        reply_known(request, known, existing);
+    else if (admission.result != STORE_INSERTED)
+        reply_known(request, &admission);
     else
         reply_job(request, MHD_HTTP_CREATED, &submission->job, false);
 }
-
-static const char *const created_headers[] = {"ETag", "Location", "Idempotent-Replayed", NULL};
 
 const struct operation operation_submit = {
     .summary = "Submits a job",
@@ -196,12 +185,12 @@ const struct operation operation_submit = {
     .responses = (const struct response[]){{.status = 201,
                                             .type = "application/json",
                                             .schema = &schema_job,
-                                            .headers = created_headers,
+                                            .headers = admission_made_headers,
                                             .meaning = "the job is on disk"},
                                            {.status = 200,
                                             .type = "application/json",
                                             .schema = &schema_job,
-                                            .headers = created_headers,
+                                            .headers = admission_made_headers,
                                             .meaning = "with reuse: a job whose result is there"},
                                            RESPONSE_END},
     .problems = (const unsigned int[]){429, 507, 0},
