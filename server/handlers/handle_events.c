@@ -37,6 +37,15 @@ static void refuse_event_id(struct request *request, const char *detail)
 
 static const char no_event_id[] = "this is not the id of an event";
 
+#define EVENT_STREAM(events)                                                                       \
+    {                                                                                              \
+        .status = 200, .type = "text/event-stream", .meaning = (events)                            \
+    }
+#define NOTHING_LEFT                                                                               \
+    {                                                                                              \
+        .status = 204, .meaning = "nothing is left to tell, now or ever"                           \
+    }
+
 const struct operation operation_job_events = {
     .summary = "What happens to a job, from its start, as Server-Sent Events",
     .path = operation_job_path,
@@ -48,12 +57,9 @@ const struct operation operation_job_events = {
     .headers = last_event_headers,
     .responses =
         (const struct response[]){
-            {.status = 200,
-             .type = "text/event-stream",
-             .meaning = "events state, progress, reaction, probe, energy, frame, warning, log, "
-                        "rewind, gap, done; the last ends the stream"},
-            {.status = 204, .meaning = "nothing is left to tell, now or ever"},
-            RESPONSE_END},
+            EVENT_STREAM("events state, progress, reaction, probe, energy, frame, warning, log, "
+                         "rewind, gap, done; the last ends the stream"),
+            NOTHING_LEFT, RESPONSE_END},
 };
 
 /* Tells a browser's EventSource not to connect again. */
@@ -95,7 +101,7 @@ enum handled handle_job_events(struct request *request)
     return HANDLED;
 }
 
-/* "ROW" or "latest"; false for anything else. */
+/* The row behind which the reader wants to go on, as "ROW" or "latest". */
 static bool row_parse(struct feed *feed, const char *text, int64_t *row)
 {
     char *end = NULL;
@@ -112,6 +118,15 @@ static bool row_parse(struct feed *feed, const char *text, int64_t *row)
            *row <= feed_last(feed);
 }
 
+/* False: the reply is made. */
+static bool row_read(struct request *request, int64_t *row)
+{
+    if (row_parse(events_feed(request->service->events), event_id_given(request), row))
+        return true;
+    refuse_event_id(request, no_event_id);
+    return false;
+}
+
 const struct operation operation_study_events = {
     .summary = "What happens to a study and its rows, from its start, as Server-Sent Events",
     .path = operation_study_path,
@@ -119,12 +134,9 @@ const struct operation operation_study_events = {
     .headers = last_event_headers,
     .responses =
         (const struct response[]){
-            {.status = 200,
-             .type = "text/event-stream",
-             .meaning = "events state of the study, row of its rows, gap, done; the last ends the "
-                        "stream"},
-            {.status = 204, .meaning = "nothing is left to tell, now or ever"},
-            RESPONSE_END},
+            EVENT_STREAM("events state of the study, row of its rows, gap, done; the last ends "
+                         "the stream"),
+            NOTHING_LEFT, RESPONSE_END},
 };
 
 enum handled handle_study_events(struct request *request)
@@ -132,13 +144,8 @@ enum handled handle_study_events(struct request *request)
     struct event_source source = {.kind = SOURCE_STUDY};
     struct study_stream *stream = &source.study;
     struct study study;
-    int64_t row = 0;
-    const char *id = event_id_given(request);
-    if (!row_parse(events_feed(request->service->events), id, &row)) {
-        refuse_event_id(request, no_event_id);
-        return HANDLED;
-    }
-    if (!study_request_read(request, false, &study))
+    int64_t row;
+    if (!row_read(request, &row) || !study_request_read(request, false, &study))
         return HANDLED;
     study_stream_open(stream, request->service->store, study.id, row);
     study_stream_fill(stream);
@@ -158,10 +165,8 @@ const struct operation operation_events = {
     .headers = last_event_headers,
     .responses =
         (const struct response[]){
-            {.status = 200,
-             .type = "text/event-stream",
-             .meaning = "events state and done of jobs, study of studies, with growing ids; "
-                        "progress of running jobs without one, which is not told again; gap"},
+            EVENT_STREAM("events state and done of jobs, study of studies, with growing ids; "
+                         "progress of running jobs without one, which is not told again; gap"),
             RESPONSE_END},
 };
 
@@ -169,12 +174,9 @@ enum handled handle_events(struct request *request)
 {
     struct feed *feed = events_feed(request->service->events);
     struct event_source source = {.kind = SOURCE_ALL};
-    int64_t row = 0;
-    const char *id = event_id_given(request);
-    if (!row_parse(feed, id, &row)) {
-        refuse_event_id(request, no_event_id);
+    int64_t row;
+    if (!row_read(request, &row))
         return HANDLED;
-    }
     feed_reader_open(&source.reader, feed, row);
     events_subscribe(request->service->events, request, &source);
     return HANDLED;
