@@ -58,6 +58,12 @@ enum talus_status store_finish(sqlite3 *database, sqlite3_stmt *statement,
     return status;
 }
 
+char *store_column_copy(sqlite3_stmt *statement, int column)
+{
+    const char *value = (const char *)sqlite3_column_text(statement, column);
+    return value == NULL ? NULL : strdup(value);
+}
+
 enum talus_status store_run_for(sqlite3 *database, const char *sql, const char *id,
                                 struct talus_error *error)
 {

@@ -56,9 +56,14 @@ void store_release(sqlite3_stmt *statement);
 /* Steps a statement that returns no rows, then releases it (NULL fails). */
 TALUS_MUST_CHECK enum talus_status store_finish(sqlite3 *database, sqlite3_stmt *statement,
                                                 struct talus_error *error);
+/* A copy of a text in a row (free() it), NULL for NULL. */
+char *store_column_copy(sqlite3_stmt *statement, int column);
 /* Runs a statement that returns nothing and has one parameter. */
 TALUS_MUST_CHECK enum talus_status store_run_for(sqlite3 *database, const char *sql, const char *id,
                                                  struct talus_error *error);
+/* Removes a resource and its keys; the parameter of the statement is its id (store_job.c). */
+TALUS_MUST_CHECK enum talus_status store_remove(struct store *store, const char *sql,
+                                                const char *id, struct talus_error *error);
 /* Looks a key up, notes whose resource it is, forgets all keys of a resource (store_job.c). */
 TALUS_MUST_CHECK enum talus_status store_key_look(sqlite3 *database, const struct store_key *key,
                                                   enum store_insert *result, char existing[64],

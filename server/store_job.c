@@ -31,6 +31,11 @@ static enum talus_status transition_write(sqlite3 *database, const struct job *j
     return store_finish(database, statement, error);
 }
 
+static enum talus_status not_found(const char *id, struct talus_error *error)
+{
+    return talus_error_set(error, TALUS_INVALID, "not_found", "", "there is no job %s", id);
+}
+
 static enum talus_status row_find(sqlite3 *database, const char *id, struct job *job,
                                   struct talus_error *error)
 {
@@ -45,7 +50,7 @@ static enum talus_status row_find(sqlite3 *database, const char *id, struct job 
     if (step == SQLITE_ROW)
         store_row_read(statement, job);
     else if (step == SQLITE_DONE)
-        status = talus_error_set(error, TALUS_INVALID, "not_found", "", "there is no job %s", id);
+        status = not_found(id, error);
     else
         status = store_failure(database, error);
     store_release(statement);
@@ -60,7 +65,7 @@ enum talus_status store_job_read(struct store *store, const char *id, struct job
     (void)pthread_mutex_unlock(&store->reader_mutex);
     if (status == TALUS_OK && job->deleting) {
         job_release(job);
-        status = talus_error_set(error, TALUS_INVALID, "not_found", "", "there is no job %s", id);
+        status = not_found(id, error);
     }
     return status;
 }
@@ -226,8 +231,7 @@ static enum talus_status change_apply(sqlite3 *database, void *context, struct t
     struct change_context *change = context;
     enum talus_status status = row_find(database, change->id, &change->job, error);
     if (status == TALUS_OK && change->job.deleting)
-        status = talus_error_set(error, TALUS_INVALID, "not_found", "", "there is no job %s",
-                                 change->id);
+        status = not_found(change->id, error);
     if (status != TALUS_OK)
         return status;
     int64_t transition_count = change->job.transition_count;
@@ -260,17 +264,25 @@ enum talus_status store_job_change(struct store *store, const char *id,
     return status;
 }
 
+struct removal {
+    const char *id, *sql;
+};
+
 static enum talus_status remove_apply(sqlite3 *database, void *context, struct talus_error *error)
 {
-    enum talus_status status = store_keys_remove(database, context, error);
-    return status == TALUS_OK
-               ? store_run_for(database, "DELETE FROM jobs WHERE id = ?", context, error)
-               : status;
+    const struct removal *removal = context;
+    enum talus_status status = store_keys_remove(database, removal->id, error);
+    return status == TALUS_OK ? store_run_for(database, removal->sql, removal->id, error) : status;
+}
+
+enum talus_status store_remove(struct store *store, const char *sql, const char *id,
+                               struct talus_error *error)
+{
+    struct removal removal = {.id = id, .sql = sql};
+    return store_write(store, remove_apply, &removal, error);
 }
 
 enum talus_status store_job_remove(struct store *store, const char *id, struct talus_error *error)
 {
-    char copy[64];
-    (void)snprintf(copy, sizeof copy, "%s", id);
-    return store_write(store, remove_apply, copy, error);
+    return store_remove(store, "DELETE FROM jobs WHERE id = ?", id, error);
 }

@@ -1,43 +1,21 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 #include "store_row.h"
 
-#include "text.h"
-
-#include <stdlib.h>
-#include <string.h>
-
-#define COLUMN(name) ", " #name
-#define JOB_TEXT(name) COLUMN(name)
-#define JOB_INTEGER(name) COLUMN(name)
-#define JOB_REAL(name) COLUMN(name)
+#define JOB_TEXT(name) ", " #name
+#define JOB_INTEGER(name) JOB_TEXT(name)
+#define JOB_REAL(name) JOB_TEXT(name)
 const char store_row_select[] = "SELECT id"
 #include "job_columns.def"
     ;
-#undef JOB_TEXT
-#undef JOB_INTEGER
-#undef JOB_REAL
-#define JOB_TEXT(name) COLUMN(name)
-#define JOB_INTEGER(name) COLUMN(name)
-#define JOB_REAL(name) COLUMN(name)
-static const char replace_begin[] = "INSERT INTO jobs (id"
+static const char replace_sql[] = "INSERT INTO jobs (id"
 #include "job_columns.def"
-                                    ") VALUES (?";
+                                  ") VALUES (?"
 #undef JOB_TEXT
-#undef JOB_INTEGER
-#undef JOB_REAL
 #define JOB_TEXT(name) ", ?"
-#define JOB_INTEGER(name) ", ?"
-#define JOB_REAL(name) ", ?"
-static const char replace_values[] =
 #include "job_columns.def"
-    ")";
+                                  ") ON CONFLICT (id) DO UPDATE SET id = excluded.id"
 #undef JOB_TEXT
-#undef JOB_INTEGER
-#undef JOB_REAL
 #define JOB_TEXT(name) ", " #name " = excluded." #name
-#define JOB_INTEGER(name) JOB_TEXT(name)
-#define JOB_REAL(name) JOB_TEXT(name)
-static const char replace_conflict[] = " ON CONFLICT (id) DO UPDATE SET id = excluded.id"
 #include "job_columns.def"
     ;
 #undef JOB_TEXT
@@ -47,12 +25,8 @@ static const char replace_conflict[] = " ON CONFLICT (id) DO UPDATE SET id = exc
 void store_row_read(sqlite3_stmt *statement, struct job *job)
 {
     int column = 1;
-    job->id = strdup((const char *)sqlite3_column_text(statement, 0));
-#define JOB_TEXT(name)                                                                             \
-    {                                                                                              \
-        const unsigned char *value = sqlite3_column_text(statement, column++);                     \
-        job->name = value == NULL ? NULL : strdup((const char *)value);                            \
-    }
+    job->id = store_column_copy(statement, 0);
+#define JOB_TEXT(name) job->name = store_column_copy(statement, column++);
 #define JOB_INTEGER(name) job->name = sqlite3_column_int64(statement, column++);
 #define JOB_REAL(name) job->name = sqlite3_column_double(statement, column++);
 #include "job_columns.def"
@@ -78,13 +52,8 @@ static void row_bind(sqlite3_stmt *statement, const struct job *job)
 enum talus_status store_row_write(sqlite3 *database, const struct job *job,
                                   struct talus_error *error)
 {
-    struct text sql = {0};
-    text_print(&sql, "%s%s%s", replace_begin, replace_values, replace_conflict);
-    if (sql.failed)
-        return talus_error_set(error, TALUS_MEMORY, "memory", "", "out of memory");
-    sqlite3_stmt *statement = store_prepare(database, sql.data, error);
+    sqlite3_stmt *statement = store_prepare(database, replace_sql, error);
     if (statement != NULL)
         row_bind(statement, job);
-    text_release(&sql);
     return store_finish(database, statement, error);
 }

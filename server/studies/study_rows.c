@@ -173,13 +173,23 @@ static enum talus_status place_find(sqlite3 *database, const struct row_end *end
     (void)sqlite3_bind_int64(statement, 3, end->number);
     int step = sqlite3_step(statement);
     if (step == SQLITE_ROW) {
-        const char *wanted = (const char *)sqlite3_column_text(statement, 2);
         place->state = (enum row_state)sqlite3_column_int(statement, 0);
         place->same_job = sqlite3_column_int(statement, 1) != 0;
-        place->wanted = wanted == NULL ? NULL : strdup(wanted);
+        place->wanted = store_column_copy(statement, 2);
     }
     store_release(statement);
     return step == SQLITE_ROW || step == SQLITE_DONE ? TALUS_OK : store_failure(database, error);
+}
+
+/* Runs a statement about a study, whose text is released. */
+static enum talus_status study_run_text(sqlite3 *database, struct text *sql, const char *study,
+                                        struct talus_error *error)
+{
+    enum talus_status status =
+        sql->failed ? talus_error_set(error, TALUS_MEMORY, "memory", "", "out of memory")
+                    : store_run_for(database, sql->data, study, error);
+    text_release(sql);
+    return status;
 }
 
 static enum talus_status counts_move(sqlite3 *database, const struct row_end *end,
@@ -191,18 +201,12 @@ static enum talus_status counts_move(sqlite3 *database, const struct row_end *en
                "UPDATE studies SET %s = %s - 1, reused = reused + %d, revision = revision + 1"
                " WHERE id = ?",
                row_state_name(from), row_state_name(from), (int)reused);
-    enum talus_status status =
-        sql.failed ? talus_error_set(error, TALUS_MEMORY, "memory", "", "out of memory")
-                   : store_run_for(database, sql.data, end->study, error);
-    text_release(&sql);
+    enum talus_status status = study_run_text(database, &sql, end->study, error);
     if (status != TALUS_OK)
         return status;
     text_print(&sql, "UPDATE studies SET %s = %s + 1 WHERE id = ?", row_state_name(end->state),
                row_state_name(end->state));
-    status = sql.failed ? talus_error_set(error, TALUS_MEMORY, "memory", "", "out of memory")
-                        : store_run_for(database, sql.data, end->study, error);
-    text_release(&sql);
-    return status;
+    return study_run_text(database, &sql, end->study, error);
 }
 
 /* Writes a row as `end` says, with its metrics out of those of its job, and all that follows. */
@@ -239,24 +243,26 @@ static enum talus_status row_move(sqlite3 *database, const struct row_end *end,
                               : status;
 }
 
-static enum talus_status row_not_waiting(struct talus_error *error)
+/* Moves a row that waits; any other is refused. */
+static enum talus_status row_take(sqlite3 *database, const struct row_end *end, bool reused,
+                                  const char *at, struct talus_error *error)
 {
-    return talus_error_set(error, TALUS_LIMIT, "state", "", "the row of the study does not wait");
+    struct row_place place = {0};
+    enum talus_status status = place_find(database, end, &place, error);
+    if (status == TALUS_OK)
+        status = place.state != ROW_WAITING ? talus_error_set(error, TALUS_LIMIT, "state", "",
+                                                              "the row of the study does not wait")
+                                            : row_move(database, end, &place, reused, at, error);
+    free(place.wanted);
+    return status;
 }
 
 enum talus_status study_row_end(sqlite3 *database, const struct row_end *end,
                                 struct talus_error *error)
 {
     char now[MOMENT_TEXT_SIZE];
-    struct row_place place = {0};
     moment_now_text(now);
-    enum talus_status status = place_find(database, end, &place, error);
-    if (status == TALUS_OK)
-        status = place.state != ROW_WAITING
-                     ? row_not_waiting(error)
-                     : row_move(database, end, &place, end->job != NULL, now, error);
-    free(place.wanted);
-    return status;
+    return row_take(database, end, end->job != NULL, now, error);
 }
 
 /* What a job makes of its row. */
@@ -278,14 +284,7 @@ enum talus_status study_row_enter(sqlite3 *database, const struct job *job,
     if (job->study == NULL)
         return TALUS_OK;
     const struct row_end end = end_of_job(job);
-    struct row_place place = {0};
-    enum talus_status status = place_find(database, &end, &place, error);
-    if (status == TALUS_OK)
-        status = place.state != ROW_WAITING
-                     ? row_not_waiting(error)
-                     : row_move(database, &end, &place, false, job->changed_at, error);
-    free(place.wanted);
-    return status;
+    return row_take(database, &end, false, job->changed_at, error);
 }
 
 enum talus_status study_row_follow(sqlite3 *database, const struct job *job,

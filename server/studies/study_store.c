@@ -6,7 +6,6 @@
 #include "studies/study_row_sql.h"
 #include "studies/study_rows.h"
 
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -21,7 +20,9 @@ static enum talus_status study_find(sqlite3 *database, const char *id, bool whol
 {
     struct text sql = {0};
     text_print(&sql, "%s WHERE id = ?", whole ? study_select_whole : study_select_light);
-    sqlite3_stmt *statement = sql.failed ? NULL : store_prepare(database, sql.data, error);
+    if (sql.failed)
+        return talus_error_set(error, TALUS_MEMORY, "memory", "", "out of memory");
+    sqlite3_stmt *statement = store_prepare(database, sql.data, error);
     text_release(&sql);
     if (statement == NULL)
         return TALUS_IO;
@@ -200,17 +201,7 @@ enum talus_status study_store_row_end(struct store *store, const struct row_end 
     return store_write(store, row_end_apply, &copy, error);
 }
 
-static enum talus_status remove_apply(sqlite3 *database, void *context, struct talus_error *error)
-{
-    enum talus_status status = store_keys_remove(database, context, error);
-    return status == TALUS_OK
-               ? store_run_for(database, "DELETE FROM studies WHERE id = ?", context, error)
-               : status;
-}
-
 enum talus_status study_store_remove(struct store *store, const char *id, struct talus_error *error)
 {
-    char copy[64];
-    (void)snprintf(copy, sizeof copy, "%s", id);
-    return store_write(store, remove_apply, copy, error);
+    return store_remove(store, "DELETE FROM studies WHERE id = ?", id, error);
 }
