@@ -1,17 +1,14 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-#include "supervisor.h"
-
-#include "attempt.h"
 #include "attempt_load.h"
 #include "calibration.h"
 #include "events.h"
 #include "executor_local.h"
-#include "fair_share.h"
 #include "folder.h"
 #include "jobs.h"
 #include "moment.h"
-#include "scheduler.h"
 #include "service_metrics.h"
+#include "supervisor_internal.h"
+#include "wakeup.h"
 
 #include <errno.h>
 #include <poll.h>
@@ -21,31 +18,13 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/epoll.h>
-#include <sys/eventfd.h>
 #include <sys/pidfd.h>
 #include <unistd.h>
 
 /* Between two looks: at nothing; at workers that run; at one that begins, ends or is to end. */
 enum { IDLE_MILLISECONDS = 1000, CALM_MILLISECONDS = 250, TICK_MILLISECONDS = 50 };
-enum { CANDIDATES_MAX = 64 };
 static const double disk_check_seconds = 0.5;
-static const double spawn_retry_seconds = 1;
-
-struct supervisor {
-    struct service *service;
-    pthread_t thread;
-    bool started;
-    atomic_bool stopping;
-    int wake;              /* eventfd */
-    int ends;              /* epoll over `end` of the attempts, each told once */
-    pthread_mutex_t mutex; /* of the list of attempts and their progress */
-    struct attempt *first;
-    struct scheduler scheduler;
-    struct fair_share share;
-    double start_after; /* no start before (monotonic): the last one failed */
-    atomic_uint_fast64_t progress_count;
-    uint64_t empty_at; /* the store's commit count when nothing was queued */
-};
+static const char wakeup_name[] = "the supervisor";
 
 enum talus_status supervisor_create(struct supervisor **result, struct service *service,
                                     struct talus_error *error)
@@ -56,24 +35,24 @@ enum talus_status supervisor_create(struct supervisor **result, struct service *
         return talus_error_set(error, TALUS_MEMORY, "memory", "", "out of memory");
     supervisor->service = service;
     supervisor->empty_at = UINT64_MAX;
+    supervisor->wake = -1;
     (void)pthread_mutex_init(&supervisor->mutex, NULL);
-    supervisor->wake = eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK);
     supervisor->ends = epoll_create1(EPOLL_CLOEXEC);
-    if (supervisor->wake >= 0 && supervisor->ends >= 0)
-        return TALUS_OK;
-    if (supervisor->wake >= 0)
-        fair_share_release(&supervisor->share);
-    (void)close(supervisor->wake);
-    free(supervisor);
-    *result = NULL;
-    return talus_error_set(error, TALUS_INTERNAL, "eventfd", "", "cannot make an eventfd");
+    enum talus_status status =
+        supervisor->ends >= 0
+            ? wakeup_create(&supervisor->wake, error)
+            : talus_error_set(error, TALUS_INTERNAL, "epoll", "", "cannot make an epoll");
+    if (status != TALUS_OK) {
+        supervisor_destroy(supervisor);
+        *result = NULL;
+    }
+    return status;
 }
 
 void supervisor_wake(struct supervisor *supervisor)
 {
-    const uint64_t one = 1;
-    if (supervisor != NULL && write(supervisor->wake, &one, sizeof one) < 0 && errno != EAGAIN)
-        (void)fprintf(stderr, "talusd: cannot wake the supervisor\n");
+    if (supervisor != NULL)
+        wakeup_tell(supervisor->wake, wakeup_name);
 }
 
 json_t *supervisor_progress(struct supervisor *supervisor, const char *id)
@@ -105,8 +84,7 @@ static void end_watch(struct supervisor *supervisor, struct attempt *attempt)
     }
 }
 
-/* Adds an attempt of a job that runs, with its child or (0) adopted. */
-static bool attempt_add(struct supervisor *supervisor, const struct job *job, pid_t pid)
+bool supervisor_attempt_add(struct supervisor *supervisor, const struct job *job, pid_t pid)
 {
     char *folder = jobs_folder(supervisor->service, job->id);
     struct attempt *attempt =
@@ -132,7 +110,7 @@ enum talus_status supervisor_adopt(struct supervisor *supervisor, const char *id
     /* What a dead daemon noted may not have reached the file. */
     if (status == TALUS_OK && job.steering != NULL)
         status = jobs_orders_write(supervisor->service, id, error);
-    if (status == TALUS_OK && !attempt_add(supervisor, &job, 0))
+    if (status == TALUS_OK && !supervisor_attempt_add(supervisor, &job, 0))
         status = talus_error_set(error, TALUS_MEMORY, "memory", "", "out of memory");
     job_release(&job);
     return status;
@@ -217,7 +195,7 @@ static void attempt_follow(struct supervisor *supervisor, struct attempt *attemp
     json_decref(progress);
 }
 
-static const struct job_outcome folder_gone = {
+const struct job_outcome supervisor_folder_gone = {
     .end = JOB_END_FAILED,
     .reason = "lost",
     .detail = "the job's folder is gone",
@@ -246,7 +224,7 @@ static void attempt_learn(struct supervisor *supervisor, const struct attempt *a
 /* Records the end of an attempt whose lock we got. False: the store refused; try again later. */
 static bool attempt_record(struct supervisor *supervisor, struct attempt *attempt, bool gone)
 {
-    struct job_outcome outcome = folder_gone;
+    struct job_outcome outcome = supervisor_folder_gone;
     struct talus_error error = {0};
     json_t *receipt = NULL;
     char detail[512];
@@ -297,179 +275,12 @@ static void attempt_service(struct supervisor *supervisor, struct attempt *attem
     attempt_check(supervisor, attempt, now);
 }
 
-struct candidates {
-    const struct fair_share *share;
-    struct scheduler_candidate *items;
-    size_t count, capacity;
-    int64_t workers;      /* no job is wider than the machine is now */
-    double quota_running; /* jobs of one owner that run at once, 0: any */
-    bool failed;
-};
-
-static void candidate_add(const struct store_queued *job, void *context)
-{
-    struct candidates *candidates = context;
-    const char *owner = job->owner == NULL ? "" : job->owner;
-    if (candidates->quota_running > 0 &&
-        (double)fair_share_jobs(candidates->share, owner) >= candidates->quota_running)
-        return;
-    if (candidates->count == candidates->capacity) {
-        size_t capacity = candidates->capacity == 0 ? 64 : 2 * candidates->capacity;
-        struct scheduler_candidate *items =
-            realloc(candidates->items, capacity * sizeof *candidates->items);
-        candidates->failed = candidates->failed || items == NULL;
-        if (items == NULL)
-            return;
-        candidates->items = items;
-        candidates->capacity = capacity;
-    }
-    struct scheduler_candidate *candidate = &candidates->items[candidates->count++];
-    *candidate = (struct scheduler_candidate){.priority = job->priority};
-    (void)snprintf(candidate->id, sizeof candidate->id, "%s", job->id);
-    (void)snprintf(candidate->owner, sizeof candidate->owner, "%s", owner);
-    candidate->threads = job->threads < candidates->workers ? job->threads : candidates->workers;
-}
-
-/* Begins an attempt under its lock, which the worker inherits; without a lock (the folder is gone)
- * it ends at once. */
-static enum talus_status attempt_begin(struct supervisor *supervisor, const char *id,
-                                       const char *folder, int lock, struct talus_error *error)
-{
-    struct service *service = supervisor->service;
-    struct job job = {0};
-    pid_t pid = 0;
-    enum talus_status status = jobs_begin(service, id, &job, error);
-    if (status != TALUS_OK)
-        return status;
-    if (job.threads > (int64_t)service->config->workers)
-        job.threads = (int64_t)service->config->workers;
-    metrics_attempt_begin(service->metrics, job.attempt > 1);
-    const struct executor_task task = {
-        .program = service->config->worker_program,
-        .folder = folder,
-        .threads = job.threads,
-        .attempt = job.attempt,
-        .resume = job.attempt > 1,
-        .lock = lock,
-        .memory_limit = job.memory_limit,
-        .disk_limit = job.disk_limit,
-    };
-    const struct job_outcome not_started = {.end = JOB_END_CRASHED,
-                                            .reason = "crashed",
-                                            .detail = error->text,
-                                            .exit_code = -1,
-                                            .signal_number = -1};
-    status = lock < 0 ? TALUS_IO : TALUS_OK;
-    if (status == TALUS_OK && job.steering != NULL)
-        status = jobs_orders_write(service, id, error);
-    if (status == TALUS_OK)
-        status = executor_start(&task, &pid, error);
-    if (status != TALUS_OK) {
-        struct talus_error second = {0};
-        if (jobs_finish(service, id, lock < 0 ? &folder_gone : &not_started, &second) != TALUS_OK)
-            (void)fprintf(stderr, "talusd: job %s: %s\n", id, second.text);
-    } else if (!attempt_add(supervisor, &job, pid)) {
-        executor_signal(pid, SIGKILL);
-        status = talus_error_set(error, TALUS_MEMORY, "memory", "", "out of memory");
-    }
-    job_release(&job);
-    return status;
-}
-
-static bool job_start(struct supervisor *supervisor, const char *id)
-{
-    struct talus_error error = {0};
-    char *folder = jobs_folder(supervisor->service, id);
-    int lock = folder == NULL ? -1 : event_log_lock(folder);
-    bool good = lock >= 0 || errno == ENOENT;
-    if (good) {
-        enum talus_status status = attempt_begin(supervisor, id, folder, lock, &error);
-        good = status == TALUS_OK || lock < 0 || strcmp(error.code, "state") == 0 ||
-               strcmp(error.code, "not_found") == 0;
-    }
-    if (lock >= 0)
-        (void)close(lock);
-    if (error.status != TALUS_OK && !good)
-        (void)fprintf(stderr, "talusd: job %s: %s\n", id, error.text);
-    free(folder);
-    return good;
-}
-
-static int64_t threads_free(const struct supervisor *supervisor)
-{
-    return (int64_t)supervisor->service->config->workers - attempt_load_threads(supervisor->first);
-}
-
 int64_t supervisor_threads(struct supervisor *supervisor)
 {
     (void)pthread_mutex_lock(&supervisor->mutex);
     int64_t threads = attempt_load_working(supervisor->first);
     (void)pthread_mutex_unlock(&supervisor->mutex);
     return threads;
-}
-
-/* Notes what runs, for the order of what waits. */
-static void share_note(struct supervisor *supervisor, double now)
-{
-    fair_share_begin(&supervisor->share, now);
-    for (const struct attempt *attempt = supervisor->first; attempt != NULL;
-         attempt = attempt->next)
-        (void)fair_share_note(&supervisor->share, attempt->owner, attempt->threads);
-}
-
-/* Starts the job whose turn it is. False: none may start now. */
-static bool next_start(struct supervisor *supervisor, double now)
-{
-    struct service *service = supervisor->service;
-    struct candidates candidates = {.share = &supervisor->share,
-                                    .workers = (int64_t)service->config->workers,
-                                    .quota_running = service->config->quota_running};
-    struct talus_error error = {0};
-    uint64_t count = store_commit_count(service->store);
-    bool started = false;
-    share_note(supervisor, now);
-    if (count != supervisor->empty_at &&
-        store_queue_heads(service->store, candidate_add, &candidates, &error) == TALUS_OK &&
-        !candidates.failed) {
-        fair_share_order(&supervisor->share, candidates.items, candidates.count);
-        size_t index = scheduler_pick(&supervisor->scheduler, candidates.items, candidates.count,
-                                      threads_free(supervisor), now);
-        started = index < candidates.count;
-        if (started && !job_start(supervisor, candidates.items[index].id))
-            supervisor->start_after = now + spawn_retry_seconds;
-        /* With a quota it may be the end of a job that lets another one start. */
-        if (candidates.count == 0 && service->config->quota_running <= 0)
-            supervisor->empty_at = count;
-    }
-    free(candidates.items);
-    return started;
-}
-
-static void jobs_start(struct supervisor *supervisor, double now)
-{
-    bool more = true;
-    share_note(supervisor, now);
-    while (more && !atomic_load(&supervisor->service->draining) && now >= supervisor->start_after &&
-           threads_free(supervisor) > 0)
-        more = next_start(supervisor, now);
-    share_note(supervisor, now);
-}
-
-/* Seconds until a place gets free, as far as running jobs tell. */
-double supervisor_patience(struct supervisor *supervisor)
-{
-    double least = 60;
-    (void)pthread_mutex_lock(&supervisor->mutex);
-    if (threads_free(supervisor) > 0)
-        least = 1;
-    for (const struct attempt *attempt = supervisor->first; attempt != NULL;
-         attempt = attempt->next) {
-        const json_t *eta = json_object_get(attempt->progress, "eta_seconds");
-        if (json_is_number(eta) && json_number_value(eta) < least)
-            least = json_number_value(eta);
-    }
-    (void)pthread_mutex_unlock(&supervisor->mutex);
-    return least < 1 ? 1 : least;
 }
 
 /* Whether nothing is expected of an attempt that would not wake the thread. */
@@ -486,7 +297,6 @@ static void supervisor_wait(struct supervisor *supervisor)
     struct pollfd ready[] = {{.fd = supervisor->wake, .events = POLLIN},
                              {.fd = supervisor->ends, .events = POLLIN}};
     struct epoll_event ended[16];
-    uint64_t count;
     int milliseconds = supervisor->first == NULL ? IDLE_MILLISECONDS : CALM_MILLISECONDS;
     for (const struct attempt *attempt = supervisor->first; attempt != NULL;
          attempt = attempt->next) {
@@ -495,9 +305,8 @@ static void supervisor_wait(struct supervisor *supervisor)
     }
     if (poll(ready, 2, milliseconds) <= 0)
         return;
-    if ((ready[0].revents & POLLIN) != 0 && read(supervisor->wake, &count, sizeof count) < 0 &&
-        errno != EAGAIN)
-        (void)fprintf(stderr, "talusd: cannot read the wake-up\n");
+    if ((ready[0].revents & POLLIN) != 0)
+        wakeup_clear(supervisor->wake, wakeup_name);
     if ((ready[1].revents & POLLIN) != 0)
         (void)epoll_wait(supervisor->ends, ended, sizeof ended / sizeof ended[0], 0);
 }
@@ -514,7 +323,7 @@ static void *supervisor_main(void *argument)
             next = attempt->next;
             attempt_service(supervisor, attempt, now);
         }
-        jobs_start(supervisor, now);
+        supervisor_jobs_start(supervisor, now);
     }
     return NULL;
 }
@@ -534,14 +343,17 @@ void supervisor_destroy(struct supervisor *supervisor)
     if (supervisor == NULL)
         return;
     atomic_store(&supervisor->stopping, true);
-    supervisor_wake(supervisor);
-    if (supervisor->started)
+    if (supervisor->started) {
+        supervisor_wake(supervisor);
         (void)pthread_join(supervisor->thread, NULL);
+    }
     while (supervisor->first != NULL)
         attempt_unlink(supervisor, supervisor->first);
     fair_share_release(&supervisor->share);
-    (void)close(supervisor->wake);
-    (void)close(supervisor->ends);
+    if (supervisor->wake >= 0)
+        (void)close(supervisor->wake);
+    if (supervisor->ends >= 0)
+        (void)close(supervisor->ends);
     (void)pthread_mutex_destroy(&supervisor->mutex);
     free(supervisor);
 }

@@ -5,20 +5,20 @@
 #include "studies/study_run.h"
 #include "studies/study_store.h"
 #include "waits.h"
+#include "wakeup.h"
 
-#include <errno.h>
 #include <poll.h>
 #include <pthread.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/eventfd.h>
 #include <unistd.h>
 
 /* Queued jobs of studies for each thread that jobs run on: enough that none of them waits for the
  * next, few enough that what users submit by hand does not queue behind a whole study. */
 enum { AHEAD_PER_WORKER = 2 };
 static const double retry_seconds = 1;
+static const char wakeup_name[] = "the studies";
 
 struct study_driver {
     struct service *service;
@@ -26,7 +26,7 @@ struct study_driver {
     bool started;
     atomic_bool stopping;
     atomic_bool wishes; /* something is wanted of a study that no transition tells */
-    int wake;           /* eventfd */
+    int wake;           /* wakeup.h */
     int64_t seen;       /* transitions up to this one are known */
     struct study_run *first;
     struct helper helper;
@@ -43,19 +43,18 @@ enum talus_status study_driver_create(struct study_driver **result, struct servi
         return talus_error_set(error, TALUS_MEMORY, "memory", "", "out of memory");
     driver->service = service;
     helper_init(&driver->helper, service->config);
-    driver->wake = eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK);
-    if (driver->wake >= 0)
-        return TALUS_OK;
-    free(driver);
-    *result = NULL;
-    return talus_error_set(error, TALUS_INTERNAL, "eventfd", "", "cannot make an eventfd");
+    enum talus_status status = wakeup_create(&driver->wake, error);
+    if (status != TALUS_OK) {
+        free(driver);
+        *result = NULL;
+    }
+    return status;
 }
 
 void study_driver_wake(struct study_driver *driver)
 {
-    const uint64_t one = 1;
-    if (driver != NULL && write(driver->wake, &one, sizeof one) < 0 && errno != EAGAIN)
-        (void)fprintf(stderr, "talusd: cannot wake the studies\n");
+    if (driver != NULL)
+        wakeup_tell(driver->wake, wakeup_name);
 }
 
 void study_driver_wish(struct study_driver *driver)
@@ -223,12 +222,10 @@ static void places_fill(struct study_driver *driver)
 static void driver_wait(struct study_driver *driver)
 {
     struct pollfd ready = {.fd = driver->wake, .events = POLLIN};
-    uint64_t count;
     double left = driver->retry_at - moment_monotonic();
     int timeout = driver->retry_at <= 0 ? -1 : left <= 0 ? 0 : (int)(left * 1e3) + 1;
-    if (poll(&ready, 1, timeout) > 0 && read(driver->wake, &count, sizeof count) < 0 &&
-        errno != EAGAIN)
-        (void)fprintf(stderr, "talusd: cannot read the wake-up of the studies\n");
+    if (poll(&ready, 1, timeout) > 0)
+        wakeup_clear(driver->wake, wakeup_name);
 }
 
 static void *driver_main(void *argument)
