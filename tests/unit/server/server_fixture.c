@@ -34,6 +34,28 @@ void fixture_write(const char *folder, const char *name, const void *data, size_
     free(path);
 }
 
+int store_fixture_setup(void **state)
+{
+    struct talus_error error = {0};
+    struct store_fixture *fixture = calloc(1, sizeof *fixture);
+    assert_non_null(fixture);
+    fixture->folder = fixture_folder();
+    fixture->path = folder_join(fixture->folder, "db.sqlite");
+    assert_int_equal(store_open(fixture->path, &fixture->store, &error), TALUS_OK);
+    *state = fixture;
+    return 0;
+}
+
+int store_fixture_teardown(void **state)
+{
+    struct store_fixture *fixture = *state;
+    store_close(fixture->store);
+    fixture_folder_remove(fixture->folder);
+    free(fixture->path);
+    free(fixture);
+    return 0;
+}
+
 struct job fixture_job(const char *id)
 {
     struct talus_error error = {0};

@@ -1,7 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-#include "folder.h"
 #include "server_fixture.h"
-#include "store.h"
 #include "studies/study_store.h"
 #include "text.h"
 
@@ -9,33 +7,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-
-struct fixture {
-    char *folder, *path;
-    struct store *store;
-};
-
-static int setup(void **state)
-{
-    struct talus_error error = {0};
-    struct fixture *fixture = calloc(1, sizeof *fixture);
-    assert_non_null(fixture);
-    fixture->folder = fixture_folder();
-    fixture->path = folder_join(fixture->folder, "db.sqlite");
-    assert_int_equal(store_open(fixture->path, &fixture->store, &error), TALUS_OK);
-    *state = fixture;
-    return 0;
-}
-
-static int teardown(void **state)
-{
-    struct fixture *fixture = *state;
-    store_close(fixture->store);
-    fixture_folder_remove(fixture->folder);
-    free(fixture->path);
-    free(fixture);
-    return 0;
-}
 
 static enum store_insert insert(struct store *store, const char *id, const char *key,
                                 const char *body, int64_t queue_limit, char existing[64])
@@ -66,7 +37,7 @@ static void study_insert(struct store *store, char *id)
 
 static void test_every_column_survives(void **state)
 {
-    struct fixture *fixture = *state;
+    struct store_fixture *fixture = *state;
     struct talus_error error = {0};
     enum store_insert result;
     char existing[64];
@@ -103,7 +74,7 @@ static void test_every_column_survives(void **state)
 
 static void test_keys(void **state)
 {
-    struct fixture *fixture = *state;
+    struct store_fixture *fixture = *state;
     struct talus_error error = {0};
     struct job job = {0};
     enum store_insert result;
@@ -126,7 +97,7 @@ static void test_keys(void **state)
 
 static void test_queue_limit(void **state)
 {
-    struct fixture *fixture = *state;
+    struct store_fixture *fixture = *state;
     char existing[64];
     assert_int_equal(insert(fixture->store, "j1", NULL, NULL, 2, existing), STORE_INSERTED);
     assert_int_equal(insert(fixture->store, "j2", NULL, NULL, 2, existing), STORE_INSERTED);
@@ -162,7 +133,7 @@ static enum talus_status transition_note(const struct store_transition *transiti
 
 static void test_changes(void **state)
 {
-    struct fixture *fixture = *state;
+    struct store_fixture *fixture = *state;
     struct talus_error error = {0};
     struct job job = {0};
     char existing[64];
@@ -211,7 +182,7 @@ static void expect_list(struct store *store, struct store_filter filter, const c
 
 static void test_lists(void **state)
 {
-    struct fixture *fixture = *state;
+    struct store_fixture *fixture = *state;
     struct talus_error error = {0};
     enum store_insert result;
     char existing[64];
@@ -278,7 +249,7 @@ static bool count_one(const struct job *job, void *context)
 
 static void test_writers_at_once(void **state)
 {
-    struct fixture *fixture = *state;
+    struct store_fixture *fixture = *state;
     struct talus_error error = {0};
     pthread_t threads[WRITERS];
     struct writer writers[WRITERS];
@@ -300,12 +271,12 @@ static void test_writers_at_once(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test_setup_teardown(test_every_column_survives, setup, teardown),
-        cmocka_unit_test_setup_teardown(test_keys, setup, teardown),
-        cmocka_unit_test_setup_teardown(test_queue_limit, setup, teardown),
-        cmocka_unit_test_setup_teardown(test_changes, setup, teardown),
-        cmocka_unit_test_setup_teardown(test_lists, setup, teardown),
-        cmocka_unit_test_setup_teardown(test_writers_at_once, setup, teardown),
+        STORE_TEST(test_every_column_survives),
+        STORE_TEST(test_keys),
+        STORE_TEST(test_queue_limit),
+        STORE_TEST(test_changes),
+        STORE_TEST(test_lists),
+        STORE_TEST(test_writers_at_once),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

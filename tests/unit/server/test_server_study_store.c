@@ -1,38 +1,10 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-#include "folder.h"
 #include "server_fixture.h"
 #include "studies/study_store.h"
 
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-
-struct fixture {
-    char *folder, *path;
-    struct store *store;
-};
-
-static int setup(void **state)
-{
-    struct talus_error error = {0};
-    struct fixture *fixture = calloc(1, sizeof *fixture);
-    assert_non_null(fixture);
-    fixture->folder = fixture_folder();
-    fixture->path = folder_join(fixture->folder, "db.sqlite");
-    assert_int_equal(store_open(fixture->path, &fixture->store, &error), TALUS_OK);
-    *state = fixture;
-    return 0;
-}
-
-static int teardown(void **state)
-{
-    struct fixture *fixture = *state;
-    store_close(fixture->store);
-    fixture_folder_remove(fixture->folder);
-    free(fixture->path);
-    free(fixture);
-    return 0;
-}
 
 static json_t *rows_make(size_t count)
 {
@@ -141,7 +113,7 @@ static struct rows_seen rows_of(struct store *store, const char *id)
 
 static void test_rows_follow_their_jobs(void **state)
 {
-    struct fixture *fixture = *state;
+    struct store_fixture *fixture = *state;
     struct talus_error error = {0};
     char existing[64];
     assert_int_equal(insert(fixture->store, "s1", 3, NULL, existing), STORE_INSERTED);
@@ -174,7 +146,7 @@ static void test_rows_follow_their_jobs(void **state)
 
 static void test_a_row_becomes_one_job(void **state)
 {
-    struct fixture *fixture = *state;
+    struct store_fixture *fixture = *state;
     struct talus_error error = {0};
     struct job job = {0};
     char existing[64];
@@ -190,7 +162,7 @@ static void test_a_row_becomes_one_job(void **state)
 
 static void test_a_row_shows_another_job(void **state)
 {
-    struct fixture *fixture = *state;
+    struct store_fixture *fixture = *state;
     struct talus_error error = {0};
     char existing[64];
     (void)insert(fixture->store, "s1", 2, NULL, existing);
@@ -255,7 +227,7 @@ static bool change_see(const char *id, void *context)
 
 static void test_transitions_share_one_numbering(void **state)
 {
-    struct fixture *fixture = *state;
+    struct store_fixture *fixture = *state;
     struct talus_error error = {0};
     struct transitions_seen seen = {0};
     struct study_change change = {.apply = cancel};
@@ -298,7 +270,7 @@ static enum talus_status append(struct study *study, struct study_change *change
 
 static void test_rows_are_appended(void **state)
 {
-    struct fixture *fixture = *state;
+    struct store_fixture *fixture = *state;
     struct talus_error error = {0};
     struct study study = {0};
     char existing[64];
@@ -315,7 +287,7 @@ static void test_rows_are_appended(void **state)
 
 static void test_keys_and_removal(void **state)
 {
-    struct fixture *fixture = *state;
+    struct store_fixture *fixture = *state;
     struct talus_error error = {0};
     char existing[64];
     const struct store_key key = {.owner = "", .key = "k", .body = "b"};
@@ -333,7 +305,7 @@ static void test_keys_and_removal(void **state)
 
 static void test_finished_jobs_are_found(void **state)
 {
-    struct fixture *fixture = *state;
+    struct store_fixture *fixture = *state;
     struct talus_error error = {0};
     struct job job = fixture_job("j1");
     enum store_insert result;
@@ -356,13 +328,10 @@ static void test_finished_jobs_are_found(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test_setup_teardown(test_rows_follow_their_jobs, setup, teardown),
-        cmocka_unit_test_setup_teardown(test_a_row_becomes_one_job, setup, teardown),
-        cmocka_unit_test_setup_teardown(test_a_row_shows_another_job, setup, teardown),
-        cmocka_unit_test_setup_teardown(test_transitions_share_one_numbering, setup, teardown),
-        cmocka_unit_test_setup_teardown(test_rows_are_appended, setup, teardown),
-        cmocka_unit_test_setup_teardown(test_keys_and_removal, setup, teardown),
-        cmocka_unit_test_setup_teardown(test_finished_jobs_are_found, setup, teardown),
+        STORE_TEST(test_rows_follow_their_jobs),  STORE_TEST(test_a_row_becomes_one_job),
+        STORE_TEST(test_a_row_shows_another_job), STORE_TEST(test_transitions_share_one_numbering),
+        STORE_TEST(test_rows_are_appended),       STORE_TEST(test_keys_and_removal),
+        STORE_TEST(test_finished_jobs_are_found),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
