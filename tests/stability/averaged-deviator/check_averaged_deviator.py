@@ -25,6 +25,18 @@ def kept(verification, control, periods):
     return float(energy[-1] / energy[0])
 
 
+def swing_back(verification, control):
+    """How far the tip goes to the other side in the second half of a period, over how far it went in
+    the first half."""
+    period = 2 * math.pi / beam.timoshenko
+    run = verification.run(beam_theory.scene(f"swing with {control}", "plane_stress", MODULI, CELL,
+                                             2e-5 * CELL, period, "full", 48, control))
+    record = beam_theory.Motion(run)
+    tip, first = record.tip()[0], record.time < period / 2
+    out = tip[first][numpy.argmax(abs(tip[first]))]
+    return float((-tip[~first] / out).max())
+
+
 def motion(verification, control):
     return Bending(verification, f"motion with {control}", "plane_stress", MODULI, CELL,
                    {"control": control, "field": "full"})
@@ -33,6 +45,9 @@ def motion(verification, control):
 verification = Verification("averaged-deviator")
 # Half a period is enough; an amplitude that falls by 20 % takes 36 % of the energy.
 verification.below("node: energy left after half a period", kept(verification, "node", 0.5), 0.64)
+verification.below("node: swing back in the second half of a period, over the first",
+                   swing_back(verification, "node"), 0.8)
+verification.above("cell: the same", swing_back(verification, "cell"), 0.95)
 for control in ("cell", "hybrid"):
     verification.above(f"{control}: energy left after a period", kept(verification, control, 1.0),
                        0.95)
