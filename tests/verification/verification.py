@@ -18,6 +18,7 @@ import tempfile
 import time
 
 FULL = os.environ.get("TALUS_FULL") == "1"
+PROCESSOR_TIME = "processor time [s]"
 SHIPPED_SCENES = pathlib.Path(__file__).resolve().parents[2] / "clients" / "scenes"
 
 
@@ -171,6 +172,9 @@ class Verification:
         verdict = good_word if good else "FAILED"
         self.failed += not good
         print(f"  {verdict:6} {quantity}: {value} (tolerance: {tolerance})")
+        self._write_row(quantity, tolerance, value, verdict)
+
+    def _write_row(self, quantity, tolerance, value, verdict):
         table = os.environ.get("TALUS_VERIFICATION_TABLE")
         if table:
             with open(table, "a") as file:
@@ -217,6 +221,8 @@ class Verification:
 
     def finish(self):
         self.scratch.cleanup()
+        spent = os.times()
+        self._write_row(PROCESSOR_TIME, "none: reported", f"{sum(spent[:4]):.1f}", "note")
         sys.exit(1 if self.failed else 0)
 
 

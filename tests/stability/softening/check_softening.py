@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A block of clay that loses strength as it shears, pressed between smooth plates in plane strain. The
-shear band is two or three cells wide, whatever these are, so the block fails faster on a finer grid.
-This is reported, not cured: nothing in the model has a length. Without softening the load is the same."""
+"""A block of clay that loses strength as it shears, pressed between smooth plates in plane strain, and one
+of dense sand under a pressure from the sides. The shear band is some cells wide, whatever these are, so
+the block fails faster on a finer grid. This is reported, not cured: nothing in the models has a length.
+Without softening the load is the same."""
 import numpy as np
 from verification import Verification
 
@@ -10,6 +11,8 @@ COHESION, RESIDUAL, RATE = 1000.0, 200.0, 10.0
 # Less than half of the finer cell: the plate stays on its line of nodes.
 SHORTENING, DURATION = 0.024, 1.0
 CELLS = (0.1, 0.05)
+SEED = {"min": [0, 0.2], "max": [0.1, 0.3]}
+PRESSURE = 150e3  # [Pa] around the sand
 PEAK = 2 * COHESION  # [Pa] of Tresca without lateral stress
 
 
@@ -24,9 +27,8 @@ def clay(cohesion, softens):
 def scene(cell, softens):
     """A fifth weaker in a square at the side, of the same size on all grids: there the band begins."""
     speed = SHORTENING / DURATION
-    seed = {"min": [0, 0.2], "max": [0.1, 0.3]}
     parts = [("clay", [0, 0], [WIDTH, 0.2]), ("clay", [0.1, 0.2], [WIDTH, 0.3]),
-             ("clay", [0, 0.3], [WIDTH, HEIGHT]), ("weak", seed["min"], seed["max"])]
+             ("clay", [0, 0.3], [WIDTH, HEIGHT]), ("weak", SEED["min"], SEED["max"])]
     return {
         "title": f"clay that {'softens' if softens else 'does not soften'}, cells of {cell}",
         "dimension": "plane_strain", "duration": DURATION,
@@ -47,10 +49,32 @@ def scene(cell, softens):
     }
 
 
-def load(run):
-    """Over the largest that the block can carry; the mean of a hundredth of the duration on either
-    side."""
-    force = -np.array(run.reaction("floor", "y")) / WIDTH / PEAK
+def sand_scene(cell):
+    """Mast 2013, table 3.5 i: its friction rises to a peak and falls to 20 degrees."""
+    described = scene(cell, True)
+    friction = {"a0": 20.0, "a1": 7750.0, "a2": 3.33e-7, "a3": 150.0, "a4": 20.0, "a5": 300.0}
+    sand = {"model": "matsuoka_nakai", "density": 2000.0, "young_modulus": 75e6, "poisson_ratio": 0.33}
+    described["title"] = f"dense sand, cells of {cell}"
+    described["materials"] = {"clay": {**sand, "friction": friction},
+                              "weak": {**sand, "friction": {**friction, "a1": 0.8 * friction["a1"]}}}
+    for body in described["bodies"]:
+        sides = {"x_min": body["box"]["min"][0] == 0, "x_max": body["box"]["max"][0] == WIDTH}
+        body["traction"] = [{"face": face, "pressure": PRESSURE} for face in sides if sides[face]]
+        body["initial_stress"] = [-PRESSURE, -PRESSURE, -PRESSURE, 0, 0, 0]
+    return described
+
+
+def shortening_after_peak(run):
+    """Until half of what is lost in the end is lost."""
+    carried = load(run, PRESSURE)
+    half = (carried.max() + carried[-20:].mean()) / 2
+    return np.argmax(carried[carried.argmax():] < half) / 200 * SHORTENING
+
+
+def load(run, unit=PEAK):
+    """Over the largest that the block of clay can carry, or another stress; the mean of a hundredth of
+    the duration on either side."""
+    force = -np.array(run.reaction("floor", "y")) / WIDTH / unit
     return np.convolve(force, np.ones(5) / 5, "same")[:-2]
 
 
@@ -87,4 +111,15 @@ for cell, carried in zip(CELLS, ideal):
                           0.05)
 verification.relative("no softening: load on the finer grid, for that on the coarser", ideal[1],
                       ideal[0], 0.02)
+
+# The same of sand that dilates, hardens and softens. What shears is a band and what the block has yielded
+# in before its peak; the peak itself is reached in the band first.
+coarse, fine = (verification.run(sand_scene(cell)) for cell in CELLS)
+verification.between("sand: area that shears, cells half as wide over the wider",
+                     band_area(fine) / band_area(coarse), 0.35, 0.65)
+verification.between("sand: shortening after the peak until half of the loss, the same",
+                     shortening_after_peak(fine) / shortening_after_peak(coarse), 0.25, 0.75)
+verification.note("sand: peak load over the pressure, coarser cells", load(coarse, PRESSURE).max(),
+                  "one of a block")
+verification.note("sand: the same, finer cells", load(fine, PRESSURE).max(), "it depends on the cells")
 verification.finish()
