@@ -192,8 +192,7 @@ static void gather_motion(struct run *run, struct block_scratch *scratch,
 {
     const struct shape_context context = run_shape_context(run, still ? 0.0 : run->time_step);
     const size_t count = (size_t)block->row_count * LANE_COUNT;
-    const bool corrects = run->pic_share < 1 && (!run_kicks(run) || block->constrained ||
-                                                 run->scene.solver.local_damping > 0);
+    const bool corrects = run->pic_share < 1 && (!run_kicks(run) || block->constrained);
     const bool affine = run->grid.layout.component_count[PARTICLE_AFFINE] > 0;
     unsigned what = GATHER_DISPLACEMENT | more;
     if (!still)

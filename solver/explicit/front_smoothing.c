@@ -71,13 +71,19 @@ static void keep_velocity(const struct run *run, const struct shape_context *con
 {
     const size_t axes = run->grid.domain.axis_count;
     const size_t count = (size_t)block->row_count * LANE_COUNT;
+    const struct node_layout *layout = &context->nodes->layout;
+    const uint32_t kicks[2] = {layout->kick, layout->passed};
     real *const *kick = scratch->stress; /* no stress there yet */
-    if (run_kicks(run))
-        run->kernels->gather_values(context, block, axes, kick, context->nodes->layout.kick);
-    for (uint32_t axis = 0; axis < axes; axis++) {
-        const real *velocity = particle_values(&run->grid.layout, block, PARTICLE_VELOCITY, axis);
-        for (size_t slot = 0; slot < count; slot++)
-            scratch->spin[axis][slot] = velocity[slot] - (run_kicks(run) ? kick[axis][slot] : 0);
+    for (uint32_t axis = 0; axis < axes; axis++)
+        memcpy(scratch->spin[axis],
+               particle_values(&run->grid.layout, block, PARTICLE_VELOCITY, axis),
+               count * sizeof(real));
+    for (size_t index = 0; run_kicks(run) && index < 2 && kicks[index] != 0; index++) {
+        run->kernels->gather_values(context, block, axes, kick, kicks[index]);
+        for (uint32_t axis = 0; axis < axes; axis++) {
+            for (size_t slot = 0; slot < count; slot++)
+                scratch->spin[axis][slot] -= kick[axis][slot];
+        }
     }
 }
 

@@ -48,9 +48,13 @@ static void kick_block(struct run *run, size_t block, double factor)
     const struct inertia inertia = inertia_of(run, block);
     for (uint32_t axis = 0; axis < run->grid.domain.axis_count; axis++) {
         const lanes kick = whole_increment(run, block, &inertia, axis, factor);
+        real *momentum = node_values(nodes, block, nodes->layout.momentum + axis);
         lanes_store(node_values(nodes, block, nodes->layout.kick + axis),
                     lanes_keep(inertia.moves, kick));
-        lanes_store(node_values(nodes, block, nodes->layout.momentum + axis), lanes_splat(0.0));
+        if (nodes->layout.start != 0)
+            lanes_store(node_values(nodes, block, nodes->layout.start + axis),
+                        lanes_keep(inertia.moves, lanes_load(momentum) * inertia.inverse_mass));
+        lanes_store(momentum, lanes_splat(0.0));
     }
 }
 
@@ -119,57 +123,29 @@ void run_start_nodes(struct run *run)
     start_nodes(run);
 }
 
-/* Momentum -> velocity before the walls; local damping goes into the correction. Without a kick the
- * velocity before the step is P/m and the whole increment is the correction. */
+/* Momentum -> velocity before the walls. Without a kick the velocity before the step is P/m, and
+ * the whole increment is the correction, with local damping. */
 static void update_block(struct run *run, size_t block, double factor)
 {
     const struct node_blocks *nodes = &run->grid.nodes;
     const bool last = !run_kicks(run);
-    const real damping = (real)run->scene.solver.local_damping;
+    const real damping = last ? (real)run->scene.solver.local_damping : 0;
     const struct inertia inertia = inertia_of(run, block);
     for (uint32_t axis = 0; axis < run->grid.domain.axis_count; axis++) {
         real *momentum = node_values(nodes, block, nodes->layout.momentum + axis);
         const lanes whole = whole_increment(run, block, &inertia, axis, factor);
         const lanes start = lanes_load(momentum) * inertia.inverse_mass;
         lanes correction = last ? whole : lanes_splat(0.0);
-        if (damping > 0) {
-            /* Opposes the motion by a share of the out-of-balance force, and never reverses it. */
-            const lanes moving = start + correction;
-            const lanes speed = lanes_absolute(moving);
-            const lanes brake = damping * lanes_absolute(whole);
-            const lanes taken = lanes_select(brake < speed, brake, speed);
-            correction -= lanes_select(moving > (real)0.0, taken, -taken);
-        }
+        if (damping > 0)
+            correction += local_brake(damping, start + start + whole, whole);
         correction = lanes_keep(inertia.moves, correction);
         lanes_store(node_values(nodes, block, nodes->layout.correction + axis), correction);
         lanes_store(momentum, lanes_splat(0.0)); /* may be the place of the velocity */
         const lanes velocity = lanes_keep(inertia.moves, start) + correction;
         lanes_store(node_values(nodes, block, nodes->layout.velocity + axis), velocity);
-        if (nodes->layout.start != 0)
-            node_keep_start(run, block, axis, velocity,
-                            last ? correction : correction + lanes_keep(inertia.moves, whole));
-    }
-}
-
-/* Local damping acts at every node: its impulse and what it takes, for the audit. */
-static void sum_damping(const struct run *run, size_t block, double factor, struct node_sums *sums)
-{
-    const struct node_blocks *nodes = &run->grid.nodes;
-    const bool last = !run_kicks(run);
-    const real *mass = node_values(nodes, block, nodes->layout.mass);
-    for (uint32_t axis = 0; axis < run->grid.domain.axis_count; axis++) {
-        const real *correction = node_values(nodes, block, nodes->layout.correction + axis);
-        const real *velocity = node_values(nodes, block, nodes->layout.velocity + axis);
-        for (size_t lane = 0; lane < LANE_COUNT; lane++) {
-            if (mass[lane] <= run->mass_cutoff)
-                continue;
-            const double whole =
-                node_free_increment(run, block, lane, axis, (double)mass[lane], factor);
-            const double braked = (double)correction[lane] - (last ? whole : 0.0);
-            const double impulse = (double)mass[lane] * braked;
-            sums->damping_impulse[axis] += impulse;
-            sums->damping_energy -= impulse * ((double)velocity[lane] - 0.5 * (braked + whole));
-        }
+        if (last && nodes->layout.start != 0)
+            lanes_store(node_values(nodes, block, nodes->layout.start + axis),
+                        lanes_keep(inertia.moves, start));
     }
 }
 
@@ -199,7 +175,7 @@ static void update_chunk(struct run *run, size_t chunk, double factor, bool clea
         mass_sum += lanes_widen(lanes_keep(mass > (real)run->mass_cutoff, mass));
         update_block(run, block, factor);
         if (damped)
-            sum_damping(run, block, factor, sums);
+            local_damping_sum(run, block, factor, sums);
         if (clears && !run->block_walled[block])
             clear_scattered(run, block);
     }
@@ -237,7 +213,7 @@ static void update_nodes(struct run *run, double factor, bool clears)
 #pragma omp for schedule(static)
     for (size_t chunk = 0; chunk < wall_chunk_count(run); chunk++)
         wall_nodes_update(run, chunk, factor);
-    if (run->grid.nodes.layout.start == 0)
+    if (!start_velocity_blends(run))
         return;
 #pragma omp for schedule(static)
     for (size_t block = 0; block < run->grid.nodes.count; block++)

@@ -5,6 +5,7 @@
  * strains the material mapped back from the particles after their update):
  *   kick nodes      dv_i = dt f_i / m_i, constrained components held back
  *   first pass      v_p += sum N dv_i;  P_i = sum N m_p v_p
+ *                   (twice with local damping: then with what brakes as dv_i, local_damping.c)
  *   update nodes    v_i = contact(P_i / m_i + what was held back); correction c_i = v_i - P_i / m_i
  *   second pass     v_p += sum N c_i; strain and move with v_i; stress; m_i and f_i at the new
  *                   positions for the next step
@@ -224,10 +225,13 @@ static inline struct shape_context run_shape_context(const struct run *run, doub
     return context;
 }
 
-/* Particles take the nodes' increment before the nodes' new velocity is known; otherwise after. */
+/* Particles take the nodes' increment before the nodes' new velocity is known; otherwise after. So
+ * do those of `first` where they are braked (local_damping.c). */
 static inline bool run_kicks(const struct run *run)
 {
-    return run->scene.solver.stress_update == TALUS_STRESS_MODIFIED_LAST;
+    const struct talus_solver_options *solver = &run->scene.solver;
+    return solver->stress_update == TALUS_STRESS_MODIFIED_LAST ||
+           (solver->stress_update == TALUS_STRESS_FIRST && solver->local_damping > 0);
 }
 
 /* Index of the material of a slot. */
@@ -296,6 +300,10 @@ void run_kick_nodes(struct run *run);
 /* Velocity at the start of the step, which strains the material of `first`. */
 void run_start_nodes(struct run *run);
 void run_update_nodes(struct run *run);
+
+/* ---- local_damping.c ---- */
+/* Between the two first passes of `modified_last` with local damping: the brakes as kicks. */
+void run_brake_nodes(struct run *run);
 
 /* ---- small_mass.c ---- */
 /* Internal forces of nodes that carry hardly any mass, once they are complete. */

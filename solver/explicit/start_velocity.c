@@ -1,8 +1,13 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* The velocity at the start of the step beside that at its end, for scenes whose material moves or
  * strains with something between them: v_theta = v - (1 - theta) (v - v_start); or of which a part
- * strains with the first alone (front_smoothing.c). */
-#include "boundaries/contact.h"
+ * strains with the first alone (front_smoothing.c); or that is braked by its mean over the step
+ * (local_damping.c).
+ *
+ * It is that of the particles before the forces, P_i / m_i. With `modified_last` the second pass of
+ * the step before scatters it too. What the forces add at the nodes, dt f_i / m_i, has no bound at
+ * nodes of little mass, and the velocity that has come back from the particles minus that is none
+ * that anything ever had. */
 #include "explicit/node_passes.h"
 
 #include <string.h>
@@ -14,18 +19,16 @@ void run_keep_start_velocity(struct run *run)
     const size_t axes = run->grid.domain.axis_count;
     const bool smooths =
         solver->front_threshold > 0 && solver->front_reading == TALUS_FRONT_START_VELOCITY;
-    if (solver->theta == 1 && solver->strain_theta == 1 && !smooths)
+    const bool brakes = run_kicks(run) && solver->local_damping > 0;
+    if (!start_velocity_blends(run) && !smooths && !brakes)
         return;
     layout->start = node_layout_extend(layout, axes);
+    if (run_kicks(run)) /* momentum outlives it */
+        layout->motion = layout->velocity = node_layout_extend(layout, axes);
+    if (brakes)
+        layout->passed = node_layout_extend(layout, axes);
     if (solver->theta != solver->strain_theta)
         layout->motion = node_layout_extend(layout, axes);
-}
-
-void node_keep_start(const struct run *run, size_t block, uint32_t axis, lanes velocity,
-                     lanes increment)
-{
-    const struct node_blocks *nodes = &run->grid.nodes;
-    lanes_store(node_values(nodes, block, nodes->layout.start + axis), velocity - increment);
 }
 
 void wall_node_keep_start(const struct run *run, const struct wall_node *wall,

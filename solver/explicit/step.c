@@ -88,6 +88,18 @@ static void count_crossers(const struct run *run, struct stage_clock *clock)
         clock->crossers += run->grid.tiles[index].outbox_count;
 }
 
+/* The first pass: what the forces add, and what local damping takes of it. */
+static void take_kicks(struct run *run, struct stage_clock *clock)
+{
+    run_kick_nodes(run);
+    stage_clock_lap(clock, STAGE_KICK_NODES);
+    run_pass(run, kick_tile);
+    if (run->grid.nodes.layout.passed == 0)
+        return;
+    run_brake_nodes(run);
+    run_pass(run, kick_tile);
+}
+
 /* The passes in the order of `stress_update`. */
 static void take_passes(struct run *run, struct stage_clock *clock)
 {
@@ -98,11 +110,7 @@ static void take_passes(struct run *run, struct stage_clock *clock)
     run->pic_share = transfer_of(options)->pic_share(options, run->time_step);
     if (!first)
         run_treat_light_nodes(run);
-    if (run_kicks(run)) {
-        run_kick_nodes(run);
-        stage_clock_lap(clock, STAGE_KICK_NODES);
-        run_pass(run, kick_tile);
-    } else if (first) {
+    if (first) {
         run_start_nodes(run);
         stage_clock_lap(clock, STAGE_KICK_NODES);
         if (run->node_fit.active)
@@ -112,6 +120,8 @@ static void take_passes(struct run *run, struct stage_clock *clock)
         run->audit.hoop_force = sum_tiles(run).hoop_force;
         run_treat_light_nodes(run);
     }
+    if (run_kicks(run))
+        take_kicks(run, clock);
     run_update_nodes(run);
     stage_clock_lap(clock, STAGE_UPDATE_NODES);
     if (run->node_fit.active && !first)

@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Walls at the nodes: what they hold back before the first pass, contact and reactions after it. */
-#include "boundaries/contact.h"
 #include "explicit/node_passes.h"
 
 #include <string.h>
@@ -14,7 +13,7 @@ static void free_increment(const struct run *run, const struct wall_node *wall, 
         increment[axis] = node_free_increment(run, wall->block, wall->lane, axis, mass, factor);
 }
 
-static struct contact contact_at(const struct run *run, const struct wall_node *wall)
+struct contact wall_node_contact(const struct run *run, const struct wall_node *wall)
 {
     const struct node_blocks *nodes = &run->grid.nodes;
     const double *gravity = run->gravity;
@@ -34,7 +33,7 @@ void wall_nodes_hold_back(struct run *run, size_t begin, size_t end, double fact
     const struct node_blocks *nodes = &run->grid.nodes;
     for (size_t index = begin; index < end; index++) {
         const struct wall_node *wall = &run->wall_nodes[index];
-        struct contact contact = contact_at(run, wall);
+        struct contact contact = wall_node_contact(run, wall);
         if (contact.mass <= run->mass_cutoff)
             continue;
         double increment[3];
@@ -51,7 +50,7 @@ void wall_nodes_start(struct run *run, size_t begin, size_t end)
     const struct node_blocks *nodes = &run->grid.nodes;
     for (size_t index = begin; index < end; index++) {
         const struct wall_node *wall = &run->wall_nodes[index];
-        struct contact contact = contact_at(run, wall);
+        struct contact contact = wall_node_contact(run, wall);
         contact.constraints_only = true;
         if (contact.mass <= run->mass_cutoff)
             continue;
@@ -96,56 +95,82 @@ static void add_face_sums(const struct run *run, const struct wall_node *wall,
 
 /* A wall node on its way through the node update. */
 struct wall_passage {
-    double start[3];  /* [m/s] before the forces of the step */
-    double kept[3];   /* [m/s] what the particles carry already */
-    double braked[3]; /* [m/s] local damping as applied to a free node; then as it is with walls */
+    double start[3]; /* [m/s] before the forces of the step */
+    double kept[3];  /* [m/s] what the particles carry already */
 };
 
-/* Velocities and increments before the walls. Local damping is taken back: it is a share of what
- * the walls leave unbalanced, or it would carry load in the place of friction. */
-static void enter_wall(struct run *run, const struct wall_node *wall, double factor,
-                       struct contact *contact, struct wall_passage *passage, double *damping_sums)
+/* Velocities and increments of `last` and `first` before the walls. Local damping is taken back: it
+ * is a share of what the walls leave unbalanced, or it would carry load in the place of friction.
+ */
+static void enter_unkicked(const struct run *run, const struct wall_node *wall,
+                           struct contact *contact, struct wall_passage *passage,
+                           double *damping_sums)
 {
     const struct node_blocks *nodes = &run->grid.nodes;
-    const bool last = !run_kicks(run);
-    free_increment(run, wall, contact->mass, factor, contact->acceleration_increment);
     for (uint32_t axis = 0; axis < run->grid.domain.axis_count; axis++) {
         const double whole = contact->acceleration_increment[axis];
         const double moved =
             node_values(nodes, wall->block, nodes->layout.velocity + axis)[wall->lane];
-        const double kick =
-            last ? 0.0 : node_values(nodes, wall->block, nodes->layout.kick + axis)[wall->lane];
         const double correction =
             node_values(nodes, wall->block, nodes->layout.correction + axis)[wall->lane];
-        const double braked = correction - (last ? whole : 0.0);
-        passage->kept[axis] = moved - correction;
-        passage->start[axis] = passage->kept[axis] - kick;
-        contact->free_velocity[axis] = moved - braked + (last ? 0.0 : whole - kick);
+        const double braked = correction - whole;
+        passage->kept[axis] = passage->start[axis] = moved - correction;
+        contact->free_velocity[axis] = moved - braked;
         damping_sums[0] += contact->mass * braked * (moved - 0.5 * (braked + whole));
         damping_sums[1 + axis] -= contact->mass * braked;
     }
 }
 
-/* Local damping along the motion that the walls leave, relative to them; never reverses it. */
-static void brake_at_wall(struct contact *contact, const struct wall_passage *passage,
-                          double damping, double *damping_sums)
+/* The same of `modified_last`: with what the walls held back of the kick. Brakes are part of what
+ * has come back from the particles. */
+static void enter_kicked(const struct run *run, const struct wall_node *wall,
+                         struct contact *contact, struct wall_passage *passage)
 {
-    double square = 0, gain = 0;
-    for (size_t axis = 0; axis < 3; axis++) {
-        const double sliding = contact->velocity[axis] - contact->frame[axis];
-        square += sliding * sliding;
-        gain += (contact->velocity[axis] - passage->start[axis]) * sliding;
+    const struct node_blocks *nodes = &run->grid.nodes;
+    const struct node_layout *layout = &nodes->layout;
+    const uint32_t kick = layout->passed != 0 ? layout->passed : layout->kick;
+    for (uint32_t axis = 0; axis < run->grid.domain.axis_count; axis++) {
+        const double passed = node_values(nodes, wall->block, kick + axis)[wall->lane];
+        const double moved = node_values(nodes, wall->block, layout->velocity + axis)[wall->lane];
+        passage->kept[axis] = moved;
+        if (layout->start != 0)
+            passage->start[axis] =
+                node_values(nodes, wall->block, layout->start + axis)[wall->lane];
+        contact->free_velocity[axis] = moved + contact->acceleration_increment[axis] - passed;
     }
-    if (square == 0)
-        return;
-    const double share = fmin(1.0, damping * fabs(gain) / square);
+}
+
+/* Local damping of `last` and `first`, after the walls. */
+static void brake_unkicked(const struct run *run, const struct wall_node *wall,
+                           struct contact *contact, const double start[3], double *damping_sums)
+{
+    double middle[3], gain[3], brake[3];
     for (size_t axis = 0; axis < 3; axis++) {
-        const double braked = -share * (contact->velocity[axis] - contact->frame[axis]);
-        contact->velocity[axis] += braked;
-        contact->handed_velocity[axis] += braked;
+        middle[axis] = 0.5 * (start[axis] + contact->velocity[axis]);
+        gain[axis] = contact->velocity[axis] - start[axis];
+    }
+    local_brake_at_wall(run, wall, middle, gain, brake);
+    for (size_t axis = 0; axis < 3; axis++) {
+        contact->velocity[axis] += brake[axis];
+        contact->handed_velocity[axis] += brake[axis];
         damping_sums[0] -=
-            contact->mass * braked * 0.5 * (contact->velocity[axis] + passage->start[axis]);
-        damping_sums[1 + axis] += contact->mass * braked;
+            contact->mass * brake[axis] * 0.5 * (contact->velocity[axis] + start[axis]);
+        damping_sums[1 + axis] += contact->mass * brake[axis];
+        /* Brakes are relative to walls: what they do as these move is work of the walls. */
+        damping_sums[0] += contact->mass * brake[axis] * contact->frame[axis];
+        damping_sums[4] += contact->mass * brake[axis] * contact->frame[axis];
+    }
+}
+
+/* What the brake of `modified_last` has done as the walls moved. */
+static void book_moved_brake(const struct run *run, const struct wall_node *wall,
+                             const struct contact *contact, double *damping_sums)
+{
+    const struct node_blocks *nodes = &run->grid.nodes;
+    for (uint32_t axis = 0; axis < run->grid.domain.axis_count; axis++) {
+        const double brake = node_values(nodes, wall->block, nodes->layout.kick + axis)[wall->lane];
+        damping_sums[0] += contact->mass * brake * contact->frame[axis];
+        damping_sums[4] += contact->mass * brake * contact->frame[axis];
     }
 }
 
@@ -167,12 +192,16 @@ static void update_wall_node(struct run *run, struct wall_node *wall, double fac
 {
     const struct node_blocks *nodes = &run->grid.nodes;
     memset(wall->impulse, 0, sizeof wall->impulse);
-    struct contact contact = contact_at(run, wall);
+    struct contact contact = wall_node_contact(run, wall);
     if (contact.mass <= run->mass_cutoff)
         return;
     double *totals = partial + run->walls.face_count * FACE_SUMS;
     struct wall_passage passage = {.start = {0, 0, 0}};
-    enter_wall(run, wall, factor, &contact, &passage, totals + 5);
+    free_increment(run, wall, contact.mass, factor, contact.acceleration_increment);
+    if (run_kicks(run))
+        enter_kicked(run, wall, &contact, &passage);
+    else
+        enter_unkicked(run, wall, &contact, &passage, totals + 5);
     contact_solve(&contact);
     const double work = work_of_walls(run, &contact);
     double square = 0;
@@ -182,8 +211,10 @@ static void update_wall_node(struct run *run, struct wall_node *wall, double fac
         totals[axis] += wall->impulse[axis];
         square += wall->impulse[axis] * wall->impulse[axis];
     }
-    if (run->scene.solver.local_damping > 0)
-        brake_at_wall(&contact, &passage, run->scene.solver.local_damping, totals + 5);
+    if (nodes->layout.passed != 0)
+        book_moved_brake(run, wall, &contact, totals + 5);
+    else if (run->scene.solver.local_damping > 0)
+        brake_unkicked(run, wall, &contact, passage.start, totals + 5);
     for (uint32_t axis = 0; axis < run->grid.domain.axis_count; axis++) {
         node_values(nodes, wall->block, nodes->layout.velocity + axis)[wall->lane] =
             (real)contact.velocity[axis];

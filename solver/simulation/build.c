@@ -258,10 +258,12 @@ static enum talus_status build_windows(struct run *run, struct talus_error *erro
     return TALUS_OK;
 }
 
-static unsigned scatters_of(enum talus_stress_update update)
+static unsigned scatters_of(const struct run *run)
 {
+    const enum talus_stress_update update = run->scene.solver.stress_update;
     const unsigned forces = update == TALUS_STRESS_FIRST ? 0U : SCATTER_FORCE;
-    return SCATTER_MASS | forces | (update == TALUS_STRESS_MODIFIED_LAST ? 0U : SCATTER_MOMENTUM);
+    const bool momentum = !run_kicks(run) || run->grid.nodes.layout.start != 0;
+    return SCATTER_MASS | forces | (momentum ? SCATTER_MOMENTUM : 0U);
 }
 
 enum talus_status run_build(struct run *run, const struct talus_scene *scene,
@@ -306,7 +308,7 @@ enum talus_status run_build(struct run *run, const struct talus_scene *scene,
     run->kernels = run->shape->kernels[scene->axis_count - 1];
     run_make_context(run);
     run->courant_limit = courant_limit_of(&scene->solver);
-    run->scatters = scatters_of(scene->solver.stress_update);
+    run->scatters = scatters_of(run);
     enum talus_status status = build_materials(run, error);
     if (status == TALUS_OK)
         status = build_walls(run, error);

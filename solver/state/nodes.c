@@ -17,6 +17,7 @@ void node_layout_init(struct node_layout *layout, size_t axis_count,
     layout->motion = layout->velocity;
     layout->external = 0;
     layout->start = 0;
+    layout->passed = 0;
     layout->volume = 0;
     layout->component_count = 1 + 4 * axes;
 }

@@ -24,6 +24,8 @@ struct node_layout {
     uint32_t external;   /* [N] of the present particle positions, other than stress and constant
                             gravity; 0: the scene has none */
     uint32_t start;      /* [m/s] velocity at the start of the step; 0: the scene needs none */
+    uint32_t passed;     /* [m/s] what the walls let pass of the forces, where the kick is the brake
+                            of local damping in the end; 0: the scene has none */
     uint32_t volume;     /* [m^3] of the present particle positions, and after it a mark: 1 at nodes
                             of whose support hardly anything is full; 0: the scene needs none */
     uint32_t correction; /* [m/s] velocity increment that they get in the second pass */
@@ -40,7 +42,7 @@ struct node_blocks {
 
 /* With `momentum_outlives_velocity` the second pass scatters momentum while it reads velocity, and
  * no kick is needed: velocity takes the place of the kick. Otherwise the node update turns momentum
- * into velocity in place. */
+ * into velocity in place, unless the scene gives the velocity a place of its own. */
 void node_layout_init(struct node_layout *layout, size_t axis_count,
                       bool momentum_outlives_velocity);
 /* Adds components to the layout, before there are nodes; returns the first of them. */

@@ -146,19 +146,18 @@ static bool find_walls(const struct reference *reference, size_t index,
     return any;
 }
 
-static void kick(struct reference *reference)
+/* The particles get the forces before the walls have acted, in a scatter and gather of their own.
+ */
+static bool kicks(const struct reference *reference)
 {
-    for (size_t i = 0; i < reference->node_count; i++) {
-        struct reference_node *node = &reference->nodes[i];
-        bool active[REFERENCE_WALL_MAX];
-        memset(node->kick, 0, sizeof node->kick);
-        if (node->mass <= reference->mass_cutoff)
-            continue;
-        free_increment(reference, node, node->kick);
-        if (find_walls(reference, i, active))
-            reference_hold_back(reference->walls, reference->wall_count, active, node->mass,
-                                reference->time_step, node->kick);
-    }
+    const struct talus_solver_options *solver = &reference->scene->solver;
+    return solver->stress_update == TALUS_STRESS_MODIFIED_LAST ||
+           (solver->stress_update == TALUS_STRESS_FIRST && solver->local_damping > 0);
+}
+
+/* Adds the kicks of the nodes to the velocities of the particles. */
+static void give_kicks(struct reference *reference)
+{
     for (size_t k = 0; k < reference->particle_count; k++) {
         struct reference_particle *p = &reference->particles[k];
         const struct support support = find_support(reference, p->position);
@@ -171,66 +170,27 @@ static void kick(struct reference *reference)
             }
         }
     }
+    scatter_momentum(reference);
 }
 
-/* Local damping of a free node: opposes each component of the motion by a share of the
- * out-of-balance force, never reverses it. Its work is that over the mean velocity of the step. */
-static void brake_free(struct reference *reference, struct reference_node *node,
-                       const double increment[3])
+static void kick(struct reference *reference)
 {
-    const double share = reference->scene->solver.local_damping;
-    for (int axis = 0; axis < 3; axis++) {
-        const double size = fmin(share * fabs(increment[axis]), fabs(node->velocity[axis]));
-        const double braked = node->velocity[axis] > 0 ? -size : size;
-        node->velocity[axis] += braked;
-        reference->damping_energy -=
-            node->mass * braked * (node->velocity[axis] - 0.5 * (braked + increment[axis]));
+    for (size_t i = 0; i < reference->node_count; i++) {
+        struct reference_node *node = &reference->nodes[i];
+        bool active[REFERENCE_WALL_MAX];
+        memset(node->kick, 0, sizeof node->kick);
+        memset(node->passed, 0, sizeof node->passed);
+        if (node->mass <= reference->mass_cutoff)
+            continue;
+        free_increment(reference, node, node->kick);
+        if (find_walls(reference, i, active))
+            reference_hold_back(reference->walls, reference->wall_count, active, node->mass,
+                                reference->time_step, node->kick);
+        memcpy(node->passed, node->kick, sizeof node->passed);
+        for (int axis = 0; axis < 3; axis++)
+            node->before[axis] = node->momentum[axis] / node->mass;
     }
-}
-
-/* At a wall: a share of what the walls leave unbalanced, along the motion that they leave. */
-static void brake_at_wall(struct reference *reference, const struct reference_node *node,
-                          const double before[3], struct reference_contact *contact)
-{
-    double square = 0, gain = 0;
-    for (int axis = 0; axis < 3; axis++) {
-        square += contact->velocity[axis] * contact->velocity[axis];
-        gain += contact->velocity[axis] * (contact->velocity[axis] - before[axis]);
-    }
-    if (square == 0)
-        return;
-    const double share = fmin(1.0, reference->scene->solver.local_damping * fabs(gain) / square);
-    for (int axis = 0; axis < 3; axis++) {
-        const double braked = -share * contact->velocity[axis];
-        contact->velocity[axis] += braked;
-        contact->handed[axis] += braked;
-        reference->damping_energy -=
-            node->mass * braked * 0.5 * (contact->velocity[axis] + before[axis]);
-    }
-}
-
-static void apply_walls(struct reference *reference, struct reference_node *node,
-                        const bool active[REFERENCE_WALL_MAX], const double before[3],
-                        const double increment[3])
-{
-    struct reference_contact contact;
-    memset(&contact, 0, sizeof contact);
-    for (int axis = 0; axis < 3; axis++) {
-        contact.increment[axis] = increment[axis];
-        contact.free_velocity[axis] = before[axis] + increment[axis];
-    }
-    reference_contact_solve(reference->walls, reference->wall_count, active, node->mass,
-                            reference->time_step, &contact);
-    brake_at_wall(reference, node, before, &contact);
-    for (int axis = 0; axis < 3; axis++) {
-        node->velocity[axis] = contact.velocity[axis];
-        node->correction[axis] = contact.handed[axis];
-        for (int k = 0; k < reference->wall_count; k++) {
-            node->wall_impulse[axis] += contact.impulse[k][axis];
-            reference->wall_impulse[k][axis] -= contact.impulse[k][axis];
-            reference->wall_energy -= contact.impulse[k][axis] * contact.velocity[axis];
-        }
-    }
+    give_kicks(reference);
 }
 
 /* `velocity`, as far as the walls let it pass where no force changes it. */
@@ -247,6 +207,90 @@ static void constrain(const struct reference *reference, const struct reference_
     reference_contact_solve(reference->walls, reference->wall_count, active, node->mass,
                             reference->time_step, &contact);
     memcpy(velocity, contact.velocity, sizeof contact.velocity);
+}
+
+/* Local damping of a node: opposes each component of the velocity in the middle of the step by a
+ * share of what the forces add, and takes half of it at most. At a wall along the motion that it
+ * leaves. */
+static void find_brake(const struct reference *reference, const struct reference_node *node,
+                       const double middle[3], const double gain[3], double brake[3])
+{
+    const double share = reference->scene->solver.local_damping;
+    bool active[REFERENCE_WALL_MAX];
+    if (!find_walls(reference, (size_t)(node - reference->nodes), active)) {
+        for (int axis = 0; axis < 3; axis++)
+            brake[axis] =
+                -copysign(fmin(share * fabs(gain[axis]), fabs(middle[axis])), middle[axis]);
+        return;
+    }
+    double square = 0, along = 0;
+    memcpy(brake, middle, 3 * sizeof *brake);
+    constrain(reference, node, brake);
+    for (int axis = 0; axis < 3; axis++) {
+        square += brake[axis] * brake[axis];
+        along += gain[axis] * brake[axis];
+    }
+    for (int axis = 0; axis < 3; axis++)
+        brake[axis] *= square > 0 ? -fmin(1.0, share * fabs(along) / square) : 0.0;
+}
+
+/* The particles take what brakes their nodes, as they have taken the kick. */
+static void brake(struct reference *reference)
+{
+    for (size_t i = 0; i < reference->node_count; i++) {
+        struct reference_node *node = &reference->nodes[i];
+        double middle[3];
+        if (node->mass <= reference->mass_cutoff)
+            continue;
+        for (int axis = 0; axis < 3; axis++)
+            middle[axis] = 0.5 * (node->before[axis] + node->momentum[axis] / node->mass);
+        find_brake(reference, node, middle, node->passed, node->kick);
+    }
+    give_kicks(reference);
+    for (size_t i = 0; i < reference->node_count; i++) {
+        const struct reference_node *node = &reference->nodes[i];
+        for (int axis = 0; axis < 3 && node->mass > reference->mass_cutoff; axis++)
+            reference->damping_energy -=
+                node->kick[axis] * 0.5 * (node->momentum[axis] + node->mass * node->before[axis]);
+    }
+}
+
+/* `last`: the particles take the brake with the whole of the increment. */
+static void brake_last(struct reference *reference, struct reference_node *node,
+                       const double before[3])
+{
+    double middle[3], gain[3], taken[3];
+    for (int axis = 0; axis < 3; axis++) {
+        middle[axis] = 0.5 * (before[axis] + node->velocity[axis]);
+        gain[axis] = node->velocity[axis] - before[axis];
+    }
+    find_brake(reference, node, middle, gain, taken);
+    for (int axis = 0; axis < 3; axis++) {
+        node->velocity[axis] += taken[axis];
+        node->correction[axis] += taken[axis];
+        reference->damping_energy -=
+            node->mass * taken[axis] * 0.5 * (node->velocity[axis] + before[axis]);
+    }
+}
+
+static void apply_walls(struct reference *reference, struct reference_node *node,
+                        const bool active[REFERENCE_WALL_MAX], const double increment[3])
+{
+    struct reference_contact contact;
+    memset(&contact, 0, sizeof contact);
+    memcpy(contact.increment, increment, sizeof contact.increment);
+    memcpy(contact.free_velocity, node->velocity, sizeof contact.free_velocity);
+    reference_contact_solve(reference->walls, reference->wall_count, active, node->mass,
+                            reference->time_step, &contact);
+    for (int axis = 0; axis < 3; axis++) {
+        node->velocity[axis] = contact.velocity[axis];
+        node->correction[axis] = contact.handed[axis];
+        for (int k = 0; k < reference->wall_count; k++) {
+            node->wall_impulse[axis] += contact.impulse[k][axis];
+            reference->wall_impulse[k][axis] -= contact.impulse[k][axis];
+            reference->wall_energy -= contact.impulse[k][axis] * contact.velocity[axis];
+        }
+    }
 }
 
 /* Velocity at the start of the step, which strains the material of `first`. */
@@ -279,7 +323,6 @@ static void blend_velocities(const struct reference *reference, struct reference
 static void update_node(struct reference *reference, size_t index)
 {
     struct reference_node *node = &reference->nodes[index];
-    const bool last = reference->scene->solver.stress_update != TALUS_STRESS_MODIFIED_LAST;
     double increment[3], before[3];
     bool active[REFERENCE_WALL_MAX];
     memset(node->velocity, 0, sizeof node->velocity);
@@ -292,15 +335,16 @@ static void update_node(struct reference *reference, size_t index)
     free_increment(reference, node, increment);
     for (int axis = 0; axis < 3; axis++) {
         const double carried = node->momentum[axis] / node->mass;
-        before[axis] = last ? carried : carried - node->kick[axis];
-        node->velocity[axis] = last ? carried + increment[axis] : carried;
+        before[axis] = kicks(reference) ? node->before[axis] : carried;
+        node->velocity[axis] =
+            carried + increment[axis] - (kicks(reference) ? node->passed[axis] : 0);
     }
-    if (find_walls(reference, index, active)) {
-        apply_walls(reference, node, active, before, increment);
-    } else {
-        brake_free(reference, node, increment);
+    if (find_walls(reference, index, active))
+        apply_walls(reference, node, active, increment);
+    else
         memcpy(node->correction, node->velocity, sizeof node->correction);
-    }
+    if (!kicks(reference))
+        brake_last(reference, node, before);
     for (int axis = 0; axis < 3; axis++)
         node->correction[axis] -= node->momentum[axis] / node->mass;
     blend_velocities(reference, node, before);
@@ -383,12 +427,14 @@ static void move_particles(struct reference *reference)
 void reference_step(struct reference *reference)
 {
     memset(reference->wall_impulse, 0, sizeof reference->wall_impulse);
-    if (reference->scene->solver.stress_update == TALUS_STRESS_MODIFIED_LAST)
-        kick(reference);
     scatter_momentum(reference);
     const bool first = reference->scene->solver.stress_update == TALUS_STRESS_FIRST;
     if (first)
         update_stress_first(reference);
+    if (kicks(reference))
+        kick(reference);
+    if (kicks(reference) && reference->scene->solver.local_damping > 0)
+        brake(reference);
     for (size_t i = 0; i < reference->node_count; i++)
         update_node(reference, i);
     if (carries_affine(reference))

@@ -29,6 +29,8 @@ struct reference_particle {
 struct reference_node {
     double position[3];
     double mass, force[3], momentum[3];
+    double before[3]; /* velocity before the forces */
+    double passed[3]; /* what the walls let pass of the forces */
     double kick[3], velocity[3], correction[3];
     double motion[3], straining[3]; /* velocities between start and end of the step */
     double wall_impulse[3];         /* on the material, in the last step */
