@@ -76,7 +76,7 @@ static enum talus_status check_elements(const struct talus_scene *scene, struct 
 
 /* Straining with anything but the velocity at the end of the step amplifies every wave by
  * sqrt(1 + (s - theta) (w dt)^2) per step with `last`, where s <= 1 is what a transfer leaves of
- * it, and by sqrt(1 + (1 - theta) (w dt)^2) with `modified_last`. */
+ * it, and by sqrt(1 + (1 - theta) s (w dt)^2) with `modified_last`. */
 static enum talus_status check_theta(const struct talus_scene *scene, struct talus_error *error)
 {
     static const char pointer[] = "/solver/strain_theta";

@@ -1,15 +1,18 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Local damping: what it takes is never negative, and the books hold with it. */
+/* Local damping: it never gives, the books hold with it, and what it damps comes to rest. */
 #include "explicit/run.h"
 #include "simulation/simulation_private.h"
 #include "simulation_fixture.h"
 
-static const struct setting elastic[] = {
-    {"density", 1000}, {"young_modulus", 1e6}, {"poisson_ratio", 0.3}}, stiff[] = {
-    {"density", 1000}, {"young_modulus", 1e7}, {"poisson_ratio", 0.3}};
+static const struct setting elastic[] = {{"density", 1000},
+                                         {"young_modulus", 1e6},
+                                         {"poisson_ratio", 0.3}},
+                            stiff[] = {
+                                {"density", 1000}, {"young_modulus", 1e7}, {"poisson_ratio", 0.3}};
 
 static const char *const shapes[] = {"linear", "bspline2", "bspline3", "gimp"};
-static const double dampings[] = {0, 0.1, 0.3, 0.8};
+static const double dampings[] = {0.1, 0.3, 0.8};
+static const char *const update_names[] = {"modified_last", "last", "first"};
 
 static size_t shape_named(const char *name)
 {
@@ -68,47 +71,85 @@ struct problem {
     size_t steps;
 };
 
-static const struct problem problems[] = {
-    {"cantilever", build_cantilever, 1200}, {"drift", build_drift, 600}, {"slide", build_slide, 800}};
+static const struct problem problems[] = {{"cantilever", build_cantilever, 900},
+                                          {"drift", build_drift, 500},
+                                          {"slide", build_slide, 600}};
 
-/* Runs it; the largest growth of energy beyond the books, over the turnover. */
-static double run_problem(const struct problem *problem, const char *shape, double damping,
-                          enum talus_stress_update update)
+/* Takes the steps of a problem. The audit allows the energy to grow by 1 % of the turnover beyond
+ * the books; what damping has taken may not fall at all, but for rounding. */
+static void check_books(const struct problem *problem, const char *shape, double damping,
+                        enum talus_stress_update update)
 {
     struct simulation_fixture fixture;
     problem->build(&fixture);
     fixture.scene.solver.shape_index = shape_named(shape);
     fixture.scene.solver.stress_update = update;
     fixture.scene.solver.local_damping = damping;
-    fixture.scene.energy_growth_limit = 1;
     struct talus_simulation *simulation = simulation_fixture_start(&fixture, 1);
     struct run *run = &simulation->run;
-    double before = 0, worst = 0, taken = 0;
-    struct talus_error error;
+    double before = 0, given_back = 0, growth = 0;
     for (size_t step = 0; step < problem->steps; step++) {
-        if (run_take_step(run, &error) != TALUS_OK) {print_message("%s\n", error.text); worst=9; break;}
-        taken = fmax(taken, before - run->energy.damping);
+        simulation_run_steps(simulation, 1);
+        given_back = fmax(given_back, before - run->energy.damping);
         before = run->energy.damping;
         if (step % 16 == 15) {
             run_measure_energy(run);
-            worst = fmax(worst, -run_numerical_loss(run) / run_energy_turnover(run));
+            growth = fmax(growth, -run_numerical_loss(run) / run_energy_turnover(run));
         }
     }
-    print_message("%-10s %-8s %.1f %d: growth %6.2f %%, end %6.2f %%, taken %.3f back %.3g kinetic %.3g, mom %.1e\n", problem->name, shape, damping,
-                  (int)update, 100 * worst, 100*run_numerical_loss(run) / run_energy_turnover(run), run->energy.damping / run_energy_turnover(run), taken / run_energy_turnover(run), run->energy.kinetic/run_energy_turnover(run), simulation_metric(simulation, "momentum_error"));
+    const double turnover = run_energy_turnover(run);
+    print_message("%s, %s, %s, %g: growth %.2f %%, damping took %.3f and gave back %.1e\n",
+                  problem->name, shape, update_names[update], damping, 100 * growth,
+                  before / turnover, given_back / turnover);
+    assert_true(growth < 0.01);
+    assert_true(given_back <= 1e-12 * turnover);
+    assert_true(before > 0.02 * turnover);
+    assert_true(simulation_metric(simulation, "momentum_error") <= 1e-12);
     talus_simulation_destroy(simulation);
-    return worst;
 }
 
+/* With hat functions `last` is unstable at light nodes, and `first` where particles lie on the
+ * edges of cells at a wall, damped or not. */
 static void test_books(void **state)
 {
     (void)state;
     for (size_t problem = 0; problem < LENGTH(problems); problem++) {
         for (size_t shape = 0; shape < LENGTH(shapes); shape++) {
-            for (size_t damping = 0; damping < LENGTH(dampings); damping++)
-              for (int u=0;u<3;u++)
-                run_problem(&problems[problem], shapes[shape], dampings[damping], u);
+            for (size_t damping = 0; damping < LENGTH(dampings); damping++) {
+                for (int update = 0; update < TALUS_STRESS_UPDATE_COUNT; update++) {
+                    if (shape > 0 || update == TALUS_STRESS_MODIFIED_LAST)
+                        check_books(&problems[problem], shapes[shape], dampings[damping],
+                                    (enum talus_stress_update)update);
+                }
+            }
         }
+    }
+}
+
+/* What is damped comes to rest: the clamp carries the weight of the beam, within 1 %. */
+static void test_rest(void **state)
+{
+    (void)state;
+    for (size_t shape = 0; shape < LENGTH(shapes); shape++) {
+        struct simulation_fixture fixture;
+        build_cantilever(&fixture);
+        fixture.scene.solver.shape_index = shape_named(shapes[shape]);
+        fixture.scene.solver.local_damping = 0.3;
+        fixture.scene.duration = 100;
+        struct talus_simulation *simulation = simulation_fixture_start(&fixture, 1);
+        simulation_run_steps(simulation, 3000);
+        size_t columns = 0;
+        (void)talus_simulation_columns(simulation, &columns);
+        double *row = calloc(columns, sizeof *row);
+        assert_non_null(row);
+        talus_simulation_sample(simulation, row);
+        simulation_run_steps(simulation, 2000);
+        talus_simulation_sample(simulation, row);
+        const double force = row[simulation_column(simulation, "reaction.clamp.force.y")];
+        print_message("%s: the clamp carries %.4f of the weight\n", shapes[shape], -force / 4e4);
+        assert_close(force, -4e4, 0.01, 4e4);
+        free(row);
+        talus_simulation_destroy(simulation);
     }
 }
 
@@ -116,6 +157,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_books),
+        cmocka_unit_test(test_rest),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
