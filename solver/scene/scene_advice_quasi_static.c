@@ -85,8 +85,8 @@ static void advise_faster(struct scene_advice *advice, const struct scene_loadin
 /* ---- loads that are there at once, for long: rest is reached sooner ---- */
 
 /* Twice the angular frequency damps the slowest vibration critically; it falls by exp(-2 pi) a
- * period, and faster ones by the same if the period is taken too long. `local_damping` does as well,
- * but costs a pass over all particles, and goes on after t = 0. */
+ * period, and faster ones by the same if the period is taken too long. `local_damping` does as
+ * well, but costs a pass over all particles, and goes on after t = 0. */
 static const double settle_periods = 5.0;
 static const double rest_periods = 1.0;
 static const double long_periods = 50.0; /* fewer may be a vibration that is the aim */
