@@ -48,9 +48,8 @@ static void LOCAL(geometry_init)(const struct shape_context *context,
     }
 }
 
-/* Puts a point into the grid. Behind a wall at the side of the particle's own cell the field goes
- * on linearly, so that partition of unity and linear fields stay and no node behind it is touched.
- */
+/* Puts a point into the grid. What rounding leaves behind a wall at the side of the particle's own
+ * cell is taken by the nodes in front of it. */
 TALUS_INLINE void LOCAL(place_point)(const struct LOCAL(geometry) * geometry, size_t slot,
                                      const real place[DIMENSION], struct LOCAL(point) * point)
 {
@@ -90,8 +89,48 @@ static void LOCAL(linear_support)(const struct LOCAL(geometry) * geometry, size_
     }
 }
 
+/* What the walls beside its cell leave a particle along an axis, in cell widths. */
+TALUS_INLINE real LOCAL(room_at_walls)(const struct LOCAL(geometry) * geometry, size_t slot,
+                                       int axis)
+{
+    const size_t lane = slot % LANE_COUNT;
+    const real place = geometry->position[axis][slot];
+    real room = POINT_REACH;
+    if (geometry->block->folds[2 * axis] >> lane & 1)
+        room = (real)0.5 + place;
+    if (geometry->block->folds[2 * axis + 1] >> lane & 1 && (real)0.5 - place < room)
+        room = (real)0.5 - place;
+    return room;
+}
+
+/* A domain ends at the walls beside the cell of its particle: where it would reach behind one it is
+ * squeezed across it. Continued behind it, the corners of a sheared domain would take mass from
+ * nodes in front of it that nothing else gives any, and a node of negative mass moves for nobody.
+ */
+static void LOCAL(end_at_walls)(const struct LOCAL(geometry) * geometry, size_t slot,
+                                real edges[DIMENSION][DIMENSION])
+{
+    for (int axis = 0; axis < DIMENSION; axis++) {
+        const real room = LOCAL(room_at_walls)(geometry, slot, axis);
+        real reach = 0;
+        for (int edge = 0; edge < DIMENSION; edge++)
+            reach += real_absolute(edges[edge][axis]);
+        for (int edge = 0; reach > room && edge < DIMENSION; edge++)
+            edges[edge][axis] *= room / reach;
+    }
+}
+
+/* On a wall nothing is left of a domain across it: there a particle is a point. */
+static bool LOCAL(lies_on_wall)(const struct LOCAL(geometry) * geometry, size_t slot)
+{
+    bool lies = false;
+    for (int axis = 0; axis < DIMENSION; axis++)
+        lies = lies || LOCAL(room_at_walls)(geometry, slot, axis) < (real)1e-3;
+    return lies;
+}
+
 /* Half edges of a domain, shortened as a convected where it would reach farther than POINT_REACH
- * cells from the particle. */
+ * cells from the particle, or behind a wall. */
 static void LOCAL(load_edges)(const struct LOCAL(geometry) * geometry, size_t slot,
                               real edges[DIMENSION][DIMENSION])
 {
@@ -108,6 +147,7 @@ static void LOCAL(load_edges)(const struct LOCAL(geometry) * geometry, size_t sl
         for (int axis = 0; axis < DIMENSION; axis++)
             edges[edge][axis] *= POINT_REACH / reach;
     }
+    LOCAL(end_at_walls)(geometry, slot, edges);
 }
 
 /* Reciprocal vectors: g_a . r_b = 1 where a = b, else 0. */
@@ -167,7 +207,8 @@ static void LOCAL(corner_support)(const struct LOCAL(geometry) * geometry, size_
 static void LOCAL(support_at)(const struct LOCAL(geometry) * geometry, size_t slot,
                               struct LOCAL(support) * support)
 {
-    if (geometry->convected != NULL && geometry->convected[slot] == 0)
+    if ((geometry->convected != NULL && geometry->convected[slot] == 0) ||
+        LOCAL(lies_on_wall)(geometry, slot))
         LOCAL(linear_support)(geometry, slot, support);
     else
         LOCAL(corner_support)(geometry, slot, support);
