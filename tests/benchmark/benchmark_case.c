@@ -56,6 +56,11 @@ const char *benchmark_shape_word(const struct benchmark_setup *setup)
     return setup->shape == NULL ? "linear" : setup->shape;
 }
 
+const char *benchmark_transfer_word(const struct benchmark_setup *setup)
+{
+    return setup->transfer == NULL ? "flip" : setup->transfer;
+}
+
 const char *benchmark_control_word(const struct benchmark_setup *setup)
 {
     return setup->control == NULL ? "none" : setup->control;

@@ -36,6 +36,7 @@ struct benchmark_setup {
     size_t per_axis;  /* particles per cell and axis */
     int threads;
     const char *shape;    /* shape functions; NULL: linear */
+    const char *transfer; /* NULL: flip */
     bool last;            /* stress_update "last", otherwise "modified_last" */
     const char *control;  /* of anti-locking; NULL: none */
     const char *field;    /* that it fits; NULL: volumetric */
@@ -47,6 +48,7 @@ struct benchmark_setup {
 /* Words of a setup for tables and files. */
 const char *benchmark_body_word(const struct benchmark_setup *setup);
 const char *benchmark_shape_word(const struct benchmark_setup *setup);
+const char *benchmark_transfer_word(const struct benchmark_setup *setup);
 const char *benchmark_ordering_word(const struct benchmark_setup *setup);
 const char *benchmark_control_word(const struct benchmark_setup *setup);
 const char *benchmark_field_word(const struct benchmark_setup *setup);

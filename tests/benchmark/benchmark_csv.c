@@ -37,7 +37,8 @@ static void write_header(const struct benchmark_suite *suite, FILE *file)
 static void write_columns(FILE *file)
 {
     (void)fputs(
-        "set,case,body,shape,ordering,anti_locking,threads,particles,per_axis,domain_factor,"
+        "set,case,body,shape,transfer,ordering,anti_locking,threads,particles,per_axis,domain_"
+        "factor,"
         "courant,"
         "steps,repeats,rate,rate_best,rate_low,rate_high,rate_wall,rate_wall_best,relative,"
         "nanoseconds,time_step,simulated,bytes_stored,bytes_grid,bytes_all,lane_fill,crossings,"
@@ -54,8 +55,9 @@ static void write_row(const struct benchmark_row *row, FILE *file)
 {
     const struct benchmark_setup *setup = &row->setup;
     const struct benchmark_result *result = &row->result;
-    (void)fprintf(file, "%s,%s,%s,%s,%s,%s,%d,%zu,%zu,%g,%g,%zu,%zu", benchmark_set_word(row->set),
-                  setup->subject->name, benchmark_body_word(setup), benchmark_shape_word(setup),
+    (void)fprintf(file, "%s,%s,%s,%s,%s,%s,%s,%d,%zu,%zu,%g,%g,%zu,%zu",
+                  benchmark_set_word(row->set), setup->subject->name, benchmark_body_word(setup),
+                  benchmark_shape_word(setup), benchmark_transfer_word(setup),
                   benchmark_ordering_word(setup), benchmark_control_word(setup), setup->threads,
                   result->particles, setup->per_axis, setup->domain_factor, setup->courant,
                   row->effort.steps, row->effort.repeats);

@@ -17,8 +17,8 @@ static const struct {
 
 double benchmark_operations(const struct benchmark_setup *setup)
 {
-    if (benchmark_is_single() || setup->shape != NULL)
-        return NAN; /* counted in double precision and with the default shape only */
+    if (benchmark_is_single() || setup->shape != NULL || setup->transfer != NULL)
+        return NAN; /* counted in double precision, with the default shape and transfer only */
     for (size_t index = 0; index < sizeof counts / sizeof counts[0]; index++) {
         if (strcmp(counts[index].name, setup->subject->name) == 0 &&
             strcmp(counts[index].ordering, benchmark_ordering_word(setup)) == 0 &&

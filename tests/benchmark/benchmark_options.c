@@ -16,7 +16,8 @@ static void print_usage(void)
         "usage: talus-benchmark --short|--full|--smoke [--csv FILE | --results FOLDER]\n"
         "                       [--precision double|single] [--isa I]\n"
         "       talus-benchmark --case NAME [--body compact|flow] [--particles N] [--per-axis N]\n"
-        "                       [--threads T] [--shape NAME] [--ordering last|modified_last]\n"
+        "                       [--threads T] [--shape NAME] [--transfer flip|pic|apic]\n"
+        "                       [--ordering last|modified_last]\n"
         "                       [--anti-locking none|cell|node|hybrid] [--field NAME]\n"
         "                       [--domain FACTOR] [--courant C]\n"
         "                       [--steps N] [--repeats N] [--precision double|single]\n"
@@ -87,6 +88,9 @@ static bool read_option(struct benchmark_options *options, int letter, const cha
     case 'h':
         setup->shape = text;
         return shape_find(text) != NULL;
+    case 'x':
+        setup->transfer = text;
+        return is_one_of(text, (const char *const[]){"flip", "pic", "apic", NULL});
     case 'o':
         return read_word(text, orderings, &setup->last);
     case 'a':
@@ -136,6 +140,7 @@ bool benchmark_options_read(int argument_count, char **arguments, struct benchma
                                           {"per-axis", required_argument, NULL, 'p'},
                                           {"threads", required_argument, NULL, 't'},
                                           {"shape", required_argument, NULL, 'h'},
+                                          {"transfer", required_argument, NULL, 'x'},
                                           {"ordering", required_argument, NULL, 'o'},
                                           {"anti-locking", required_argument, NULL, 'a'},
                                           {"domain", required_argument, NULL, 'd'},

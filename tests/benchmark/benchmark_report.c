@@ -31,13 +31,14 @@ void benchmark_report_one(const struct benchmark_row *row)
 {
     const struct benchmark_setup *setup = &row->setup;
     const struct benchmark_result *result = &row->result;
-    (void)printf("%s, %s body, %s, %s, anti-locking %s %s, %zu particles (%zu per cell and axis), "
-                 "%d thread%s, domain %g, %s, %s\n",
-                 setup->subject->name, benchmark_body_word(setup), benchmark_shape_word(setup),
-                 benchmark_ordering_word(setup), benchmark_control_word(setup),
-                 benchmark_field_word(setup), result->particles, setup->per_axis, setup->threads,
-                 setup->threads == 1 ? "" : "s", setup->domain_factor, benchmark_isa(),
-                 benchmark_is_single() ? "single" : "double");
+    (void)printf(
+        "%s, %s body, %s, %s, %s, anti-locking %s %s, %zu particles (%zu per cell and axis), "
+        "%d thread%s, domain %g, %s, %s\n",
+        setup->subject->name, benchmark_body_word(setup), benchmark_shape_word(setup),
+        benchmark_transfer_word(setup), benchmark_ordering_word(setup),
+        benchmark_control_word(setup), benchmark_field_word(setup), result->particles,
+        setup->per_axis, setup->threads, setup->threads == 1 ? "" : "s", setup->domain_factor,
+        benchmark_isa(), benchmark_is_single() ? "single" : "double");
     (void)printf("rate %.3f million particle-steps/s per core (best %.3f, quartiles %.3f %.3f): "
                  "%.2f ns; on the wall %.3f (best %.3f)\n",
                  1e3 / result->nanoseconds, 1e3 / result->fastest, 1e3 / result->quartile_high,

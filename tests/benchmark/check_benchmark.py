@@ -32,7 +32,7 @@ def label(row):
 
 
 def numbers(row):
-    words = ("set", "case", "body", "ordering", "anti_locking", "shape")
+    words = ("set", "case", "body", "ordering", "anti_locking", "shape", "transfer")
     return {key: float(value) for key, value in row.items() if key not in words}
 
 
