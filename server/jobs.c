@@ -43,8 +43,10 @@ void jobs_states_write(struct service *service, const char *id, bool lock_held)
     char *folder = jobs_folder(service, id);
     (void)pthread_mutex_lock(&service->journal);
     int lock = folder == NULL || lock_held ? -1 : event_log_lock(folder);
-    if (folder != NULL && (lock_held || lock >= 0) &&
-        event_log_repair(service->store, id, folder, &error) != TALUS_OK)
+    const bool writable = folder != NULL && (lock_held || lock >= 0);
+    if (!writable || event_log_repair(service->store, id, folder, &error) != TALUS_OK)
+        atomic_store(&service->untold, true);
+    if (error.status != TALUS_OK)
         (void)fprintf(stderr, "talusd: job %s: %s\n", id, error.text);
     if (lock >= 0)
         (void)close(lock);

@@ -4,10 +4,12 @@
 #include "event_log.h"
 #include "folder.h"
 #include "jobs.h"
+#include "store_recovery.h"
 #include "studies/study_life.h"
 #include "supervisor.h"
 
 #include <dirent.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -16,85 +18,124 @@ static enum talus_status out_of_memory(struct talus_error *error)
     return talus_error_set(error, TALUS_MEMORY, "memory", "", "out of memory");
 }
 
-/* What a walk over all jobs found; texts are owned. */
-struct recovery {
-    struct service *service;
-    char **ids;
-    int64_t *states; /* enum job_state, or -1: being deleted */
-    int64_t *transitions;
+/* Jobs in an order that a search can use. */
+struct recovery_job {
+    char id[IDENTIFIER_LENGTH + 1];
+    int64_t number; /* what the store told with it */
+};
+
+struct recovery_list {
+    struct recovery_job *jobs;
     size_t count, capacity;
     bool failed;
 };
 
-static bool recovery_note(const struct job *job, void *context)
+static void list_note(const char *id, int64_t number, void *context)
 {
-    struct recovery *recovery = context;
-    if (recovery->count == recovery->capacity) {
-        size_t capacity = recovery->capacity == 0 ? 64 : 2 * recovery->capacity;
-        char **ids = realloc(recovery->ids, capacity * sizeof *ids);
-        if (ids != NULL)
-            recovery->ids = ids;
-        int64_t *states = realloc(recovery->states, capacity * sizeof *states);
-        if (states != NULL)
-            recovery->states = states;
-        int64_t *transitions = realloc(recovery->transitions, capacity * sizeof *transitions);
-        if (transitions != NULL)
-            recovery->transitions = transitions;
-        recovery->failed = ids == NULL || states == NULL || transitions == NULL;
-        if (recovery->failed)
-            return false;
-        recovery->capacity = capacity;
+    struct recovery_list *list = context;
+    if (list->count == list->capacity) {
+        size_t capacity = list->capacity == 0 ? 1024 : 2 * list->capacity;
+        struct recovery_job *jobs = realloc(list->jobs, capacity * sizeof *jobs);
+        list->failed = list->failed || jobs == NULL;
+        if (jobs == NULL)
+            return;
+        list->jobs = jobs;
+        list->capacity = capacity;
     }
-    recovery->ids[recovery->count] = strdup(job->id);
-    recovery->states[recovery->count] = job->deleting ? -1 : job->state;
-    recovery->transitions[recovery->count] = job->transition_count;
-    recovery->failed = recovery->ids[recovery->count] == NULL;
-    recovery->count += !recovery->failed;
-    return !recovery->failed;
+    struct recovery_job *job = &list->jobs[list->count++];
+    (void)snprintf(job->id, sizeof job->id, "%s", id);
+    job->number = number;
 }
 
-static enum talus_status recover_job(struct service *service, const char *id, int64_t state,
-                                     int64_t transition_count, struct talus_error *error)
+/* Asks the store; release the list. */
+static enum talus_status
+list_read(struct service *service,
+          enum talus_status (*ask)(struct store *store, store_recovery_visit *visit, void *context,
+                                   struct talus_error *error),
+          struct recovery_list *list, struct talus_error *error)
 {
-    if (state < 0)
-        return jobs_removal_complete(service, id, error);
-    if (state == JOB_RUNNING)
-        return supervisor_adopt(service->supervisor, id, error);
-    char *folder = jobs_folder(service, id);
-    if (folder != NULL && event_log_last_number(folder) < transition_count)
-        jobs_states_write(service, id, false);
-    free(folder);
-    return folder == NULL ? out_of_memory(error) : TALUS_OK;
+    memset(list, 0, sizeof *list);
+    enum talus_status status = ask(service->store, list_note, list, error);
+    return status == TALUS_OK && list->failed ? out_of_memory(error) : status;
+}
+
+static void list_release(struct recovery_list *list)
+{
+    free(list->jobs);
+}
+
+static enum talus_status removals_complete(struct service *service, struct talus_error *error)
+{
+    struct recovery_list list;
+    enum talus_status status = list_read(service, store_recovery_removals, &list, error);
+    for (size_t index = 0; index < list.count && status == TALUS_OK; index++)
+        status = jobs_removal_complete(service, list.jobs[index].id, error);
+    list_release(&list);
+    return status;
+}
+
+/* Adds the state lines that a dead daemon did not come to write. */
+static enum talus_status states_complete(struct service *service, struct talus_error *error)
+{
+    struct recovery_list list;
+    enum talus_status status = list_read(service, store_recovery_untold, &list, error);
+    for (size_t index = 0; index < list.count && status == TALUS_OK; index++) {
+        char *folder = jobs_folder(service, list.jobs[index].id);
+        if (folder == NULL)
+            status = out_of_memory(error);
+        else if (event_log_last_number(folder) < list.jobs[index].number)
+            jobs_states_write(service, list.jobs[index].id, false);
+        free(folder);
+    }
+    list_release(&list);
+    return status;
 }
 
 static int id_compare(const void *a, const void *b)
 {
-    return strcmp(*(char *const *)a, *(char *const *)b);
+    return strcmp(((const struct recovery_job *)a)->id, ((const struct recovery_job *)b)->id);
 }
 
-/* Removes folders that have no row: their jobs were never acknowledged. */
-static enum talus_status orphans_remove(struct service *service, const struct recovery *recovery,
+/* Removes folders that have no row: their jobs were never acknowledged. `known` is sorted. */
+static enum talus_status orphans_remove(struct service *service, const struct recovery_list *known,
                                         struct talus_error *error)
 {
     char *path = folder_join(service->state, "jobs");
     DIR *folder = path == NULL ? NULL : opendir(path);
     const struct dirent *entry;
     enum talus_status status = folder == NULL ? out_of_memory(error) : TALUS_OK;
-    if (recovery->count > 0)
-        qsort(recovery->ids, recovery->count, sizeof *recovery->ids, id_compare);
     while (folder != NULL && status == TALUS_OK && (entry = readdir(folder)) != NULL) {
-        const char *name = entry->d_name;
-        if (!identifier_valid(name) ||
-            (recovery->count > 0 && bsearch(&name, recovery->ids, recovery->count,
-                                            sizeof *recovery->ids, id_compare) != NULL))
+        struct recovery_job job;
+        if (!identifier_valid(entry->d_name))
             continue;
-        char *orphan = jobs_folder(service, name);
+        memcpy(job.id, entry->d_name, sizeof job.id);
+        if (known->count > 0 &&
+            bsearch(&job, known->jobs, known->count, sizeof job, id_compare) != NULL)
+            continue;
+        char *orphan = jobs_folder(service, job.id);
         status = orphan == NULL ? out_of_memory(error) : folder_remove(orphan, error);
         free(orphan);
     }
     if (folder != NULL)
         (void)closedir(folder);
     free(path);
+    return status;
+}
+
+/* Hands jobs that run to the supervisor and removes folders without a job. */
+static enum talus_status jobs_recover(struct service *service, struct talus_error *error)
+{
+    struct recovery_list list;
+    enum talus_status status = list_read(service, store_recovery_jobs, &list, error);
+    for (size_t index = 0; index < list.count && status == TALUS_OK; index++) {
+        if (list.jobs[index].number == JOB_RUNNING)
+            status = supervisor_adopt(service->supervisor, list.jobs[index].id, error);
+    }
+    if (list.count > 0)
+        qsort(list.jobs, list.count, sizeof *list.jobs, id_compare);
+    if (status == TALUS_OK)
+        status = orphans_remove(service, &list, error);
+    list_release(&list);
     return status;
 }
 
@@ -122,23 +163,24 @@ static enum talus_status studies_recover(struct service *service, struct talus_e
 
 enum talus_status recovery_run(struct service *service, struct talus_error *error)
 {
-    struct recovery recovery = {.service = service};
-    const struct store_filter filter = {.state = JOB_STATE_COUNT, .every = true};
-    enum talus_status status =
-        store_job_list(service->store, &filter, recovery_note, &recovery, error);
-    if (status == TALUS_OK && recovery.failed)
-        status = out_of_memory(error);
-    for (size_t index = 0; index < recovery.count && status == TALUS_OK; index++)
-        status = recover_job(service, recovery.ids[index], recovery.states[index],
-                             recovery.transitions[index], error);
+    enum talus_status status = removals_complete(service, error);
     if (status == TALUS_OK)
-        status = orphans_remove(service, &recovery, error);
+        status = states_complete(service, error);
+    if (status == TALUS_OK)
+        status = jobs_recover(service, error);
     if (status == TALUS_OK)
         status = studies_recover(service, error);
-    for (size_t index = 0; index < recovery.count; index++)
-        free(recovery.ids[index]);
-    free(recovery.ids);
-    free(recovery.states);
-    free(recovery.transitions);
+    service->recovered = status == TALUS_OK;
+    if (status == TALUS_OK)
+        recovery_mark(service);
     return status;
+}
+
+void recovery_mark(struct service *service)
+{
+    struct talus_error error = {0};
+    if (!service->recovered || atomic_load(&service->untold))
+        return;
+    if (store_recovery_mark(service->store, &error) != TALUS_OK)
+        (void)fprintf(stderr, "talusd: %s\n", error.text);
 }

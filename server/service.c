@@ -113,6 +113,7 @@ static void parts_destroy(struct service *service)
     events_destroy(service->events);
     waits_destroy(service->waits);
     calibration_destroy(service->calibration);
+    recovery_mark(service);
     store_close(service->store);
     file_checksums_destroy(service->checksums);
     metrics_destroy(service->metrics);

@@ -39,6 +39,8 @@ struct service {
     struct audit *audit;
     struct identifier_source identifiers;
     pthread_mutex_t journal; /* one state line is written at a time */
+    atomic_bool untold;      /* a state line could not be written */
+    bool recovered;
     pthread_mutex_t schema_mutex;
     json_t *schema; /* of scenes, once a helper has told it */
     struct file_checksums *checksums;

@@ -26,6 +26,7 @@ static const struct column job_columns[] = {
 /* In order: an index comes behind the columns it is over, which jobs_prepare has added. */
 static const char *const parts[] = {
     "CREATE INDEX IF NOT EXISTS jobs_by_state ON jobs (state, priority DESC, id)",
+    "CREATE INDEX IF NOT EXISTS jobs_deleting ON jobs (id) WHERE deleting <> 0",
     /* Lists are told newest first. */
     "CREATE INDEX IF NOT EXISTS jobs_by_state_newest ON jobs (state, id)",
     "CREATE INDEX IF NOT EXISTS jobs_by_study_newest ON jobs (study, id) WHERE study IS NOT NULL",
@@ -77,6 +78,8 @@ static const char *const parts[] = {
     " job TEXT NOT NULL REFERENCES jobs (id) ON DELETE CASCADE, number INTEGER NOT NULL,"
     " at TEXT NOT NULL, state TEXT NOT NULL, attempt INTEGER NOT NULL, reason TEXT, detail TEXT,"
     " UNIQUE (job, number))",
+    /* One row: up to which row of `transitions` the state lines are in their files. */
+    "CREATE TABLE IF NOT EXISTS told (id INTEGER PRIMARY KEY, row INTEGER NOT NULL)",
     /* Of jobs and of studies: whoever removes a resource removes its keys. */
     "CREATE TABLE IF NOT EXISTS request_keys (key TEXT NOT NULL, owner TEXT NOT NULL,"
     " body TEXT NOT NULL, resource TEXT NOT NULL, PRIMARY KEY (owner, key)) WITHOUT ROWID",
