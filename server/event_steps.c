@@ -66,8 +66,10 @@ static void step_follow(const struct event_step *step, struct event_stream *stre
     stream->done = after->done;
     if (step->out.length > 0)
         stream->last = after->last;
-    /* The step may have passed a rewind, behind which the history is another file. */
+    /* The step may have passed a rewind, behind which the history is another file. Who follows
+     * needs no file: thousands of readers must not each keep one open. */
     history_reader_close(&stream->history);
+    event_tail_close(&stream->tail);
 }
 
 static void step_destroy(struct event_step *step)

@@ -2,6 +2,7 @@
 #include "event_stream.h"
 
 #include "base/protocol.h"
+#include "folder.h"
 #include "job.h"
 
 #include <errno.h>
@@ -10,6 +11,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
 enum { OUT_BYTES = 64 << 10, CHUNK_ROWS = 512 };
 
@@ -294,9 +296,11 @@ void event_stream_skip(struct event_stream *stream)
 int64_t event_stream_backlog(const struct event_stream *stream)
 {
     struct stat information;
-    if (stream->tail.descriptor < 0 || fstat(stream->tail.descriptor, &information) != 0)
-        return 0;
-    return (int64_t)information.st_size - stream->tail.offset;
+    int descriptor = folder_open(stream->folder, PROTOCOL_EVENTS_FILE);
+    bool known = descriptor >= 0 && fstat(descriptor, &information) == 0;
+    if (descriptor >= 0)
+        (void)close(descriptor);
+    return known ? (int64_t)information.st_size - stream->tail.offset : 0;
 }
 
 void event_stream_close(struct event_stream *stream)

@@ -18,7 +18,7 @@
 #include <string.h>
 #include <unistd.h>
 
-enum { CONNECTION_MEMORY = 32 << 10, IDLE_SECONDS = 120 };
+enum { CONNECTION_MEMORY = 8 << 10, IDLE_SECONDS = 120 };
 
 struct http_server {
     struct service *service;
