@@ -9,7 +9,8 @@
  * supervisor. Nothing else may touch jobs meanwhile. */
 TALUS_MUST_CHECK enum talus_status recovery_run(struct service *service, struct talus_error *error);
 /* Notes how far all is in agreement, which the next start need not look at again. For when nobody
- * changes jobs: does nothing unless recovery was complete and every state line since was written. */
+ * changes jobs: does nothing unless recovery was complete and every state line since was written.
+ */
 void recovery_mark(struct service *service);
 
 #endif
