@@ -34,18 +34,17 @@ static bool overlap(const struct talus_scene *scene, const struct extent *a, con
     return true;
 }
 
-/* True if another body goes on where this one ends: they are parts of one feature. */
-static bool goes_on(const struct talus_scene *scene, size_t index, const struct extent *own,
+/* True if another body goes on where this one ends: they are parts of one feature. `extents` are
+ * those of all bodies. */
+static bool goes_on(const struct talus_scene *scene, size_t index, const struct extent *extents,
                     size_t axis)
 {
     const double reach = 0.5 * scene->grid.cell[axis];
+    const struct extent *own = &extents[index];
     for (size_t other = 0; other < scene->body_count; other++) {
-        struct extent next;
-        if (other == index)
-            continue;
-        scene_body_bounds(scene, &scene->bodies[other], next.min, next.max);
-        if (overlap(scene, own, &next, axis) && next.min[axis] <= own->max[axis] + reach &&
-            next.max[axis] >= own->min[axis] - reach)
+        const struct extent *next = &extents[other];
+        if (other != index && overlap(scene, own, next, axis) &&
+            next->min[axis] <= own->max[axis] + reach && next->max[axis] >= own->min[axis] - reach)
             return true;
     }
     return false;
@@ -65,28 +64,31 @@ static bool is_confined(const struct talus_scene *scene, const struct extent *ow
 static void look_at_bodies(const struct talus_scene *scene, struct scene_feature *smallest)
 {
     enum { COMPARED_MAX = 100 }; /* pairs are compared: larger scenes are left alone */
+    struct extent extents[COMPARED_MAX];
     if (scene->body_count > COMPARED_MAX)
         return;
+    for (size_t index = 0; index < scene->body_count; index++)
+        scene_body_bounds(scene, &scene->bodies[index], extents[index].min, extents[index].max);
     for (size_t index = 0; index < scene->body_count; index++) {
         const struct talus_body *body = &scene->bodies[index];
+        const struct extent *own = &extents[index];
         struct seeding_lattice lattice;
-        struct extent own;
         if (body->shape == TALUS_BODY_POINTS)
             continue;
         seeding_lattice_init(&lattice, scene, body);
-        scene_body_bounds(scene, body, own.min, own.max);
         if (seeding_lattice_point_count(&lattice) < 2.0)
             continue;
         for (size_t k = 0; k < scene->axis_count; k++) {
-            if (!is_channel(scene, k) && !goes_on(scene, index, &own, k) &&
-                !is_confined(scene, &own, k))
-                keep_smaller(smallest, &(struct scene_feature){
-                                           .cells = (own.max[k] - own.min[k]) / scene->grid.cell[k],
-                                           .least = too_few,
-                                           .axis = k,
-                                           .kind = "body",
-                                           .name = body->name,
-                                           .consequence = "it cannot bend or shear"});
+            if (!is_channel(scene, k) && !goes_on(scene, index, extents, k) &&
+                !is_confined(scene, own, k))
+                keep_smaller(smallest,
+                             &(struct scene_feature){.cells = (own->max[k] - own->min[k]) /
+                                                              scene->grid.cell[k],
+                                                     .least = too_few,
+                                                     .axis = k,
+                                                     .kind = "body",
+                                                     .name = body->name,
+                                                     .consequence = "it cannot bend or shear"});
         }
     }
 }

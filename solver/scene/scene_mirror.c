@@ -47,10 +47,7 @@ static bool vectors_mirror(const struct scene_mirror *mirror, const double a[3],
 static bool polygons_mirror(const struct scene_mirror *mirror, const struct talus_body *a,
                             const struct talus_body *b)
 {
-    enum { VERTEX_MAX = 64 };
     const size_t count = a->vertex_count;
-    if (count != b->vertex_count || count > VERTEX_MAX)
-        return false;
     for (size_t first = 0; first < count; first++) {
         bool same = true;
         for (size_t vertex = 0; vertex < count && same; vertex++)
@@ -65,8 +62,10 @@ static bool polygons_mirror(const struct scene_mirror *mirror, const struct talu
 static bool shapes_mirror(const struct scene_mirror *mirror, const struct talus_body *a,
                           const struct talus_body *b)
 {
+    enum { VERTEX_MAX = 64 }; /* every vertex is compared with every other */
     struct seeding_shape first, second;
-    if (a->shape != b->shape || a->shape == TALUS_BODY_POINTS)
+    if (a->shape != b->shape || a->shape == TALUS_BODY_POINTS ||
+        a->vertex_count != b->vertex_count || a->vertex_count > VERTEX_MAX)
         return false;
     seeding_shape_init(&first, mirror->scene, a);
     seeding_shape_init(&second, mirror->scene, b);
