@@ -14,7 +14,9 @@
 #include <unistd.h>
 
 enum { STREAM_BLOCK_BYTES = 8192 };
-static const double tick_seconds = 0.1;
+static const double tick_seconds = 0.1, idle_seconds = 0.25; /* with and without readers */
+/* Looks that take less need no pause, which costs a wake-up itself. */
+static const double short_look_seconds = 1e-3;
 static const double comment_seconds = 15;
 
 /* One reader. The events thread owns the source; `ready` and the flags belong to the mutex. */
@@ -26,6 +28,7 @@ struct subscription {
     struct text ready; /* for the HTTP thread */
     size_t sent;       /* bytes of it that are gone */
     double last_sent;  /* when the reader last took something */
+    bool behind;       /* there may be more to tell at once */
     bool suspended, ended, closed;
     bool revoked; /* the token is not in force any more */
     struct subscription *next;
@@ -59,8 +62,9 @@ static ssize_t subscription_read(void *context, uint64_t position, char *buffer,
             /* Thousands of idle readers must not each keep a buffer. */
             text_release(&own->ready);
             own->sent = 0;
-            events->woken = true;
-            (void)pthread_cond_signal(&events->wake);
+            events->woken = events->woken || own->behind;
+            if (own->behind)
+                (void)pthread_cond_signal(&events->wake);
         }
     } else if (own->ended) {
         result = MHD_CONTENT_READER_END_OF_STREAM;
@@ -101,6 +105,9 @@ static void subscription_service(struct subscription *own, struct event_steps *s
     if (idle && out->length == 0 && silent >= comment_seconds)
         text_add_string(out, ": still here\n\n");
     (void)pthread_mutex_lock(&events->mutex);
+    /* What is left out for its length comes in pieces of more than this. */
+    if (idle)
+        own->behind = out->length >= STREAM_BLOCK_BYTES;
     if (out->length > 0)
         text_add(&own->ready, out->data, out->length);
     if (event_source_done(&own->source) || own->ready.failed || out->failed || events->ending ||
@@ -136,7 +143,7 @@ static void events_wait(struct events *events)
 {
     struct timespec until;
     (void)clock_gettime(CLOCK_REALTIME, &until);
-    until.tv_nsec += (long)(tick_seconds * 1e9);
+    until.tv_nsec += (long)((events->first == NULL ? idle_seconds : tick_seconds) * 1e9);
     if (until.tv_nsec >= 1000000000L) {
         until.tv_nsec -= 1000000000L;
         until.tv_sec++;
@@ -151,7 +158,8 @@ static void events_wait(struct events *events)
  * long as the last one took, so that one look serves many of them. */
 static void looks_pace(double seconds)
 {
-    (void)usleep((useconds_t)(1e6 * (seconds < tick_seconds ? seconds : tick_seconds)));
+    if (seconds > short_look_seconds)
+        (void)usleep((useconds_t)(1e6 * (seconds < tick_seconds ? seconds : tick_seconds)));
 }
 
 static void *events_main(void *argument)
@@ -243,6 +251,7 @@ void events_subscribe(struct events *events, struct request *request,
     own->source = *source;
     own->proof = request->proof;
     own->last_sent = moment_monotonic();
+    own->behind = true;
     /* Also pushes the header fields out. */
     text_add_string(&own->ready, "retry: 1000\n\n");
     reply_stream(&request->reply, response);

@@ -5,34 +5,7 @@
 #include "supervisor.h"
 
 #include <stddef.h>
-#include <stdio.h>
 #include <string.h>
-
-static json_t *text_json(const char *text)
-{
-    return text == NULL ? json_null() : json_string(text);
-}
-
-static json_t *document_json(const char *text, const char *missing)
-{
-    json_t *value = json_loads(text == NULL ? missing : text, JSON_DECODE_ANY, NULL);
-    return value == NULL ? json_null() : value;
-}
-
-static json_t *links_json(const struct job *job)
-{
-    static const char *const names[] = {"events", "series", "frames", "files",
-                                        "log",    "cancel", "resume"};
-    char path[128];
-    json_t *links = json_object();
-    (void)snprintf(path, sizeof path, "/v1/jobs/%s", job->id);
-    (void)json_object_set_new(links, "self", json_string(path));
-    for (size_t index = 0; index < sizeof names / sizeof names[0]; index++) {
-        (void)snprintf(path, sizeof path, "/v1/jobs/%s/%s", job->id, names[index]);
-        (void)json_object_set_new(links, names[index], json_string(path));
-    }
-    return links;
-}
 
 /* Of a job whose worker has told nothing yet: all of its own time is left, as forecast. */
 static json_t *progress_first(const struct job *job)
@@ -46,15 +19,6 @@ static json_t *progress_first(const struct job *job)
         (void)json_object_set(progress, "eta_seconds", expected);
     json_decref(forecast);
     return progress;
-}
-
-static json_t *progress_json(struct service *service, const struct job *job)
-{
-    json_t *progress =
-        job->state == JOB_RUNNING ? supervisor_progress(service->supervisor, job->id) : NULL;
-    if (progress != NULL)
-        return progress;
-    return job->progress != NULL ? document_json(job->progress, "null") : progress_first(job);
 }
 
 /* Columns whose text is a member of the view: reading and writing them again would be most of the
@@ -75,38 +39,6 @@ static const struct {
 };
 enum { DOCUMENT_COUNT = sizeof documents / sizeof documents[0] };
 
-/* Everything but the documents that the store holds as they are told. */
-static json_t *plain_members(struct service *service, const struct job *job)
-{
-    json_t *view = json_object();
-    const char *state = job_state_name((enum job_state)job->state);
-    (void)json_object_set_new(view, "id", json_string(job->id));
-    (void)json_object_set_new(view, "name", text_json(job->name));
-    (void)json_object_set_new(view, "state", json_string(state));
-    (void)json_object_set_new(view, "reason", text_json(job->reason));
-    (void)json_object_set_new(view, "detail", text_json(job->detail));
-    (void)json_object_set_new(view, "study", text_json(job->study));
-    (void)json_object_set_new(view, "study_row",
-                              job->study == NULL ? json_null() : json_integer(job->study_row));
-    (void)json_object_set_new(view, "owner", text_json(job->owner));
-    (void)json_object_set_new(view, "reused_from", text_json(job->reused_from));
-    (void)json_object_set_new(view, "steered", json_boolean(job->steered));
-    (void)json_object_set_new(view, "cancel_requested",
-                              json_boolean(job->cancel_requested && job->state == JOB_RUNNING));
-    (void)json_object_set_new(view, "revision", json_integer(job->revision));
-    (void)json_object_set_new(view, "priority", json_integer(job->priority));
-    (void)json_object_set_new(view, "threads", json_integer(job->threads));
-    (void)json_object_set_new(view, "limits", job_limits_json(job));
-    (void)json_object_set_new(view, "retries", json_integer(job->retries));
-    (void)json_object_set_new(view, "created_at", text_json(job->created_at));
-    (void)json_object_set_new(view, "started_at", text_json(job->started_at));
-    (void)json_object_set_new(view, "finished_at", text_json(job->finished_at));
-    (void)json_object_set_new(view, "progress", progress_json(service, job));
-    (void)json_object_set_new(view, "scene_hash", text_json(job->scene_hash));
-    (void)json_object_set_new(view, "links", links_json(job));
-    return view;
-}
-
 /* Whether a comma-separated list (NULL: of all) has a name. */
 static bool field_wanted(const char *fields, const char *key)
 {
@@ -120,36 +52,128 @@ static bool field_wanted(const char *fields, const char *key)
     return wanted;
 }
 
-static json_t *members_thin(json_t *view, const char *fields)
+/* A view as it grows. A tree of JSON values would be most of what a list costs. */
+struct view {
+    struct text *text;
+    const char *fields, *separator;
+};
+
+/* Begins a member if it is wanted. */
+static bool member_begin(struct view *view, const char *key)
 {
-    const char *key;
-    json_t *value;
-    void *next;
-    json_object_foreach_safe(view, next, key, value)
-    {
-        if (!field_wanted(fields, key))
-            (void)json_object_del(view, key);
+    if (!field_wanted(view->fields, key))
+        return false;
+    text_add_string(view->text, view->separator);
+    text_add_string(view->text, key);
+    text_add_string(view->text, "\":");
+    view->separator = ",\"";
+    return true;
+}
+
+static void member_text(struct view *view, const char *key, const char *value)
+{
+    if (!member_begin(view, key))
+        return;
+    if (value == NULL)
+        text_add_string(view->text, "null");
+    else
+        json_text_add_string(view->text, value);
+}
+
+static void member_integer(struct view *view, const char *key, int64_t value)
+{
+    if (member_begin(view, key))
+        text_add_integer(view->text, value);
+}
+
+static void member_boolean(struct view *view, const char *key, bool value)
+{
+    if (member_begin(view, key))
+        text_add_string(view->text, value ? "true" : "false");
+}
+
+/* Takes the value over. */
+static void member_json(struct view *view, const char *key, json_t *value)
+{
+    if (member_begin(view, key))
+        json_text_add(view->text, value, 0);
+    json_decref(value);
+}
+
+static void member_progress(struct view *view, struct service *service, const struct job *job)
+{
+    if (!field_wanted(view->fields, "progress"))
+        return;
+    json_t *live =
+        job->state == JOB_RUNNING ? supervisor_progress(service->supervisor, job->id) : NULL;
+    if (live != NULL || job->progress == NULL)
+        member_json(view, "progress", live != NULL ? live : progress_first(job));
+    else if (member_begin(view, "progress"))
+        text_add_string(view->text, job->progress);
+}
+
+static void member_links(struct view *view, const struct job *job)
+{
+    static const char *const names[] = {"events", "series", "frames", "files",
+                                        "log",    "cancel", "resume"};
+    const char *const begin = "\":\"/v1/jobs/";
+    if (!member_begin(view, "links"))
+        return;
+    text_add_string(view->text, "{\"self");
+    text_add_string(view->text, begin);
+    text_add_string(view->text, job->id);
+    for (size_t index = 0; index < sizeof names / sizeof names[0]; index++) {
+        text_add_string(view->text, "\",\"");
+        text_add_string(view->text, names[index]);
+        text_add_string(view->text, begin);
+        text_add_string(view->text, job->id);
+        text_add_string(view->text, "/");
+        text_add_string(view->text, names[index]);
     }
-    return view;
+    text_add_string(view->text, "\"}");
+}
+
+/* Everything but the documents that the store holds as they are told. */
+static void plain_members(struct view *view, struct service *service, const struct job *job)
+{
+    member_text(view, "id", job->id);
+    member_text(view, "name", job->name);
+    member_text(view, "state", job_state_name((enum job_state)job->state));
+    member_text(view, "reason", job->reason);
+    member_text(view, "detail", job->detail);
+    member_text(view, "study", job->study);
+    if (job->study == NULL)
+        member_text(view, "study_row", NULL);
+    else
+        member_integer(view, "study_row", job->study_row);
+    member_text(view, "owner", job->owner);
+    member_text(view, "reused_from", job->reused_from);
+    member_boolean(view, "steered", job->steered != 0);
+    member_boolean(view, "cancel_requested", job->cancel_requested && job->state == JOB_RUNNING);
+    member_integer(view, "revision", job->revision);
+    member_integer(view, "priority", job->priority);
+    member_integer(view, "threads", job->threads);
+    member_json(view, "limits", job_limits_json(job));
+    member_integer(view, "retries", job->retries);
+    member_text(view, "created_at", job->created_at);
+    member_text(view, "started_at", job->started_at);
+    member_text(view, "finished_at", job->finished_at);
+    member_progress(view, service, job);
+    member_text(view, "scene_hash", job->scene_hash);
+    member_links(view, job);
 }
 
 void jobs_text_add(struct text *text, struct service *service, const struct job *job,
                    const char *fields)
 {
-    json_t *plain = members_thin(plain_members(service, job), fields);
-    const char *separator = json_object_size(plain) == 0 ? "" : ",";
-    json_text_add(text, plain, 0);
-    if (!text->failed)
-        text_cut(text, text->length - 1); /* the brace that closes it */
+    struct view view = {.text = text, .fields = fields, .separator = "\""};
+    text_add_string(text, "{");
+    plain_members(&view, service, job);
     for (size_t index = 0; index < DOCUMENT_COUNT; index++) {
         const char *const *member =
             (const char *const *)(const void *)((const char *)job + documents[index].offset);
-        if (!field_wanted(fields, documents[index].key))
-            continue;
-        text_print(text, "%s\"%s\":", separator, documents[index].key);
-        text_add_string(text, *member == NULL ? documents[index].missing : *member);
-        separator = ",";
+        if (member_begin(&view, documents[index].key))
+            text_add_string(text, *member == NULL ? documents[index].missing : *member);
     }
     text_add_string(text, "}");
-    json_decref(plain);
 }

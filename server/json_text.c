@@ -27,7 +27,7 @@ static bool string_is_plain(const char *string)
     return true;
 }
 
-static void string_add(struct text *text, const char *string)
+void json_text_add_string(struct text *text, const char *string)
 {
     if (string_is_plain(string)) {
         text_add_string(text, "\"");
@@ -82,7 +82,7 @@ static void object_add(struct text *text, const json_t *object, unsigned int ind
         text_add_string(text, separator);
         separator = ",";
         line_begin(text, indent, level + 1);
-        string_add(text, key);
+        json_text_add_string(text, key);
         text_add_string(text, indent > 0 ? ": " : ":");
         value_add(text, member, indent, level + 1);
     }
@@ -106,10 +106,10 @@ static void value_add(struct text *text, const json_t *value, unsigned int inden
         array_add(text, value, indent, level);
         break;
     case JSON_STRING:
-        string_add(text, json_string_value(value));
+        json_text_add_string(text, json_string_value(value));
         break;
     case JSON_INTEGER:
-        text_print(text, "%" JSON_INTEGER_FORMAT, json_integer_value(value));
+        text_add_integer(text, json_integer_value(value));
         break;
     case JSON_REAL:
         text_add_number(text, json_real_value(value));

@@ -10,7 +10,9 @@
 
 /* Appends a value. `indent` is the number of blanks a level, 0: all in one line. */
 void json_text_add(struct text *text, const json_t *value, unsigned int indent);
-/* The same as a new string (free it), NULL without memory. */
+/* Appends a string, quoted. */
+void json_text_add_string(struct text *text, const char *string);
+/* A value as a new string (free it), NULL without memory. */
 char *json_text(const json_t *value, unsigned int indent);
 
 /* A new number; whole ones are integers, as a person would write them. NULL if it is not finite. */

@@ -50,15 +50,32 @@ void text_print(struct text *text, const char *format, ...)
     va_start(arguments, format);
     va_list again;
     va_copy(again, arguments);
-    int length = vsnprintf(NULL, 0, format, arguments);
+    const size_t room = text->failed || text->data == NULL ? 0 : text->capacity - text->length;
+    int length = vsnprintf(room == 0 ? NULL : text->data + text->length, room, format, arguments);
     va_end(arguments);
-    if (length < 0)
+    if (length < 0) {
         text->failed = true;
-    else if (text_reserve(text, (size_t)length)) {
+    } else if ((size_t)length < room) {
+        text->length += (size_t)length;
+    } else if (text_reserve(text, (size_t)length)) {
         (void)vsnprintf(text->data + text->length, (size_t)length + 1, format, again);
         text->length += (size_t)length;
     }
     va_end(again);
+}
+
+void text_add_integer(struct text *text, int64_t value)
+{
+    char digits[24];
+    size_t place = sizeof digits;
+    uint64_t rest = value < 0 ? -(uint64_t)value : (uint64_t)value;
+    do {
+        digits[--place] = (char)('0' + rest % 10);
+        rest /= 10;
+    } while (rest > 0);
+    if (value < 0)
+        digits[--place] = '-';
+    text_add(text, digits + place, sizeof digits - place);
 }
 
 void text_add_number(struct text *text, double value)

@@ -6,6 +6,7 @@
 
 #include <stdbool.h>
 #include <stddef.h>
+#include <stdint.h>
 
 struct text {
     char *data;
@@ -16,6 +17,7 @@ struct text {
 void text_add(struct text *text, const char *data, size_t length);
 void text_add_string(struct text *text, const char *string);
 __attribute__((format(printf, 2, 3))) void text_print(struct text *text, const char *format, ...);
+void text_add_integer(struct text *text, int64_t value);
 /* A JSON number with the fewest digits that read back to the same double; null for what JSON
  * cannot hold. */
 void text_add_number(struct text *text, double value);
