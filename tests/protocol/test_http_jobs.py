@@ -444,7 +444,8 @@ class Ends(DaemonTest):
         """The answer says in numbers what is needed and what is free."""
         needed = 10 ** 17
         scene = fake_scene({"disk_bytes": needed})
-        study = {"name": "large", "scene": scene, "metrics": ["wall_seconds"],
+        # The first row equals the scene of many jobs that have ended.
+        study = {"name": "large", "scene": scene, "metrics": ["wall_seconds"], "reuse": False,
                  "design": {"list": {"rows": [{"/duration": 1}, {"/duration": 2}]}}}
         space = os.statvfs(self.daemon.state)
         for path, body, count in (("/v1/jobs", {"scene": scene}, 1), ("/v1/studies", study, 2)):

@@ -31,14 +31,25 @@ def make_originals(daemon, client, count):
     return made
 
 
-def make_history(daemon, originals, count):
-    """The daemon is started again with `count` more jobs; seconds that this took it."""
-    daemon.terminate()
-    ids = seed(daemon.state, originals, count)
+def start_again(daemon):
+    """Seconds from the start of a daemon to its first answer."""
     begin = time.monotonic()
     daemon.start(wait=False)
     wait_for(daemon.answers, 120, "the daemon answers", every=0.002)
-    return ids, time.monotonic() - begin
+    return time.monotonic() - begin
+
+
+def make_history(daemon, originals, count):
+    """The daemon is started again with `count` more jobs, which it has to look at, then twice without
+    news: after an orderly end and after a kill. Returns the ids and {name: seconds}."""
+    daemon.terminate()
+    ids = seed(daemon.state, originals, count)
+    starts = {"where all are new": start_again(daemon)}
+    daemon.terminate()
+    starts["in order"] = start_again(daemon)
+    daemon.kill()
+    starts["after a kill"] = start_again(daemon)
+    return ids, starts
 
 
 def list_queries(client, count):
