@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Studies across restarts and kill -9 of the daemon (at random moments: tests/faults), their streams of events, and thousands of rows.
+"""Studies across restarts and kill -9 of the daemon (at random moments: tests/faults), their streams
+of events, and thousands of rows.
 
 TALUS_FULL=1: the large study runs to its end."""
 import os
