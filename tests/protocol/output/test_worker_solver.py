@@ -28,7 +28,7 @@ SCENE = {
         "outside": "eliminate",
         "outside_mass_limit": 0.9,
     },
-    "solver": {"anti_locking": {"control": "cell", "field": "volumetric"}},
+    "solver": {"shape": "linear", "anti_locking": {"control": "cell", "field": "volumetric"}},
     "materials": {
         "soil": {
             "model": "drucker_prager_cap",

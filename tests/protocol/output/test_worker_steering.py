@@ -25,7 +25,7 @@ def block(duration=0.3, **solver):
         "dimension": "plane_strain",
         "duration": duration,
         "grid": {"cell": 0.05, "min": [0, 0], "max": [1.0, 1.0]},
-        "solver": {"courant": 0.005 * LONGER, **solver},
+        "solver": {"shape": "linear", "courant": 0.005 * LONGER, **solver},
         "materials": {"rubber": {"model": "linear_elastic", "density": 1000,
                                  "young_modulus": 1e6, "poisson_ratio": 0.3}},
         "bodies": [{"name": "block", "material": "rubber", "velocity": [0, -1.0],

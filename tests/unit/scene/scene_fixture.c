@@ -9,7 +9,7 @@ static const char *const bases[] = {
     [BASE_PLANE] =
         "{\"dimension\": \"plane_strain\", \"duration\": 2.0,"
         " \"grid\": {\"cell\": 0.5, \"min\": [0, 0], \"max\": [20, 10]},"
-        " \"solver\": {\"anti_locking\": {\"control\": \"cell\"}},"
+        " \"solver\": {\"shape\": \"linear\", \"anti_locking\": {\"control\": \"cell\"}},"
         " \"materials\": {\"soil\": {\"model\": \"drucker_prager_cap\", \"density\": 2000,"
         "   \"bulk_modulus\": 8.33e6, \"shear_modulus\": 3.85e6, \"friction_angle\": 30,"
         "   \"cone_strength\": 10}},"

@@ -5,7 +5,7 @@ import math
 import pathlib
 import subprocess
 
-from verification import FULL, Verification, shipped_scene, worker
+from verification import FULL, Verification, on_linear_shapes, shipped_scene, worker
 
 RUBBER = {"model": "linear_elastic", "density": 1000, "young_modulus": 1e6, "poisson_ratio": 0.3}
 WAVE = math.sqrt(1e6 * 0.7 / (1.3 * 0.4) / 1000)  # [m/s] of the fastest wave in it
@@ -19,7 +19,7 @@ def plane(name, point, normal, condition="slip"):
 
 def checked(scene):
     path = verification.new_folder() / "scene.json"
-    path.write_text(json.dumps(scene))
+    path.write_text(json.dumps(on_linear_shapes(scene)))
     return json.loads(subprocess.run([worker(), "check", str(path), "--json"],
                                      capture_output=True, text=True, check=True).stdout)
 

@@ -48,7 +48,7 @@ def scene(problem, cells, method, per_cell=2):
     made = GEOMETRY[problem](cells, per_cell)
     made.update({"title": f"manufactured solution {problem}, {cells} cells",
                  "dimension": "plane_strain", "duration": DURATIONS[problem],
-                 "solver": dict({"kind": "explicit"}, **method),
+                 "solver": {"kind": "explicit", "shape": "linear", **method},
                  "materials": {"solid": MATERIALS[problem]},
                  "output": {"history": {"every": DURATIONS[problem]}}})
     return made

@@ -15,7 +15,7 @@ import subprocess
 
 import numpy
 from single_precision_chart import draw
-from verification import FULL, Verification, shipped_scene, worker
+from verification import FULL, Verification, on_linear_shapes, shipped_scene, worker
 
 G = 9.81
 
@@ -196,7 +196,7 @@ def check_problem(verification, problem):
 
 def answer_of_check(verification, scene):
     path = verification.new_folder() / "scene.json"
-    path.write_text(json.dumps(scene))
+    path.write_text(json.dumps(on_linear_shapes(scene)))
     ended = subprocess.run([worker(), "check", str(path), "--json"],
                            capture_output=True, text=True)
     return ended.returncode, json.loads(ended.stdout)
@@ -267,7 +267,7 @@ def check_resume(verification):
                        whole.receipt["state_hash"])
     shutil.copy(folders[1] / "checkpoint.h5", other / "checkpoint.h5")
     path = other.parent / (other.name + ".json")
-    path.write_text(json.dumps(scene))
+    path.write_text(json.dumps(on_linear_shapes(scene)))
     ended = subprocess.run(verification.command(path, other, 1, "--resume"), capture_output=True,
                            text=True)
     last = json.loads((other / "events.ndjson").read_text().splitlines()[-1])
