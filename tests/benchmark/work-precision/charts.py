@@ -66,5 +66,8 @@ def draw_all(folder):
         axes[1].legend(fontsize=6.5, loc="center left", bbox_to_anchor=(1.01, 0.5))
         figure.suptitle(problem)
         figure.tight_layout()
-        figure.savefig(folder / f"{problem.replace(' ', '-')}.svg", metadata={"Date": None})
+        path = folder / f"{problem.replace(' ', '-')}.svg"
+        figure.savefig(path, metadata={"Date": None})
         plt.close(figure)
+        # The repository has no white space at the end of a line.
+        path.write_text("".join(line.rstrip() + "\n" for line in path.read_text().splitlines()))

@@ -16,6 +16,11 @@ import manufactured
 ROOT = pathlib.Path(__file__).resolve().parents[3]
 
 
+def takes(problem, label):
+    """Whether a method is compared on a problem."""
+    return "," not in label or not getattr(problem, "shapes_only", False)
+
+
 class Refused(Exception):
     """The method is not for this problem."""
 
@@ -75,9 +80,25 @@ class Manufactured:
                 "seconds": found["seconds"]}
 
 
-class Cantilever:
+class Spatial:
+    """A problem in two dimensions, or in three with the same answer: of shapes alone, and without
+    the finest resolution, for the time that CPDI takes there."""
+
+    def __init__(self, axes=2):
+        self.axes = axes
+        if axes == 3:
+            self.name += " 3D"
+            self.resolutions = self.resolutions[:-1]
+            self.shapes_only = True
+
+    def vector(self, x, y, z):
+        return [x, y, z][:self.axes]
+
+
+class Cantilever(Spatial):
     """A clamped beam, ten times as long as high, in its first mode, over one period: distance of the
-    tip's path from the one of Timoshenko's theory (mast-6.2)."""
+    tip's path from the one of Timoshenko's theory (mast-6.2). In three dimensions with a square
+    section."""
 
     name, error = "cantilever", "tip path, root mean square / amplitude"
     resolutions = (1, 2, 3, 4)  # cells over the height
@@ -87,20 +108,25 @@ class Cantilever:
     def scene(self, cells, method):
         cell = self.HEIGHT / cells
         middle = self.HEIGHT / 2
-        return {"title": f"cantilever, {cells} cells", "dimension": "plane_stress",
+        return {"title": f"{self.name}, {cells} cells",
+                "dimension": "solid" if self.axes == 3 else "plane_stress",
                 "duration": self.PERIOD,
-                "grid": {"cell": cell, "min": [0, -1], "max": [11, 2]},
+                "grid": {"cell": cell, "min": self.vector(0, -1, -1),
+                         "max": self.vector(11, 2, 2)},
                 "solver": dict({"strain": "small"}, **method),
                 "materials": {"metal": {"model": "linear_elastic", "density": 2710,
                                         "bulk_modulus": 70.28e9, "shear_modulus": 26.23e9}},
                 "bodies": [{"name": "beam", "material": "metal",
-                            "box": {"min": [0, 0], "max": [self.LENGTH, self.HEIGHT]},
-                            "particles_per_cell": [2, 2],
-                            "velocity": {"beam_mode": {"mode": 1, "from": [0, middle],
-                                                       "to": [self.LENGTH, middle],
-                                                       "tip": [0, self.SPEED]}}}],
+                            "box": {"min": self.vector(0, 0, 0),
+                                    "max": self.vector(self.LENGTH, self.HEIGHT, self.HEIGHT)},
+                            "particles_per_cell": self.vector(2, 2, 2),
+                            "velocity": {"beam_mode": {
+                                "mode": 1, "from": self.vector(0, middle, middle),
+                                "to": self.vector(self.LENGTH, middle, middle),
+                                "tip": self.vector(0, self.SPEED, 0)}}}],
                 "boundaries": [{"name": "clamp", "condition": "stick",
-                                "plane": {"point": [0, 0], "normal": [1, 0]}}],
+                                "plane": {"point": self.vector(0, 0, 0),
+                                          "normal": self.vector(1, 0, 0)}}],
                 "probes": [{"name": "beam", "kind": "centre_of_mass", "component": "y"}],
                 "output": {"history": {"every": self.PERIOD / 200}}}
 
@@ -145,7 +171,7 @@ class DamBreak:
         return outcome(math.sqrt(square / 2), scene, metrics)
 
 
-class Column:
+class Column(Spatial):
     """An elastic column that settles by its own weight to 6 % less height, damped, until it rests: mean
     height against the exact one. Equilibrium in the first state asks for P = -rho g (H - Y) whatever
     the law; with the Hencky law ln J / J = P / M, Y from 0 to H."""
@@ -179,18 +205,26 @@ class Column:
         period = 4 * self.HEIGHT / speed
         method = json.loads(json.dumps(method))
         method.setdefault("stabilise", {}).update({"local_damping": 0.1, "force_ramp": 2 * period})
-        walls = [("floor", [0, 0], [0, 1]), ("left", [0, 0], [1, 0]), ("right", [2 * cell, 0], [-1, 0])]
-        return {"title": f"column at rest, {cells} cells", "dimension": "plane_strain",
+        wide = 2 * cell
+        far = [wide, 0, wide]
+        walls = [("floor", [0, 0, 0], [0, 1, 0]), ("left", [0, 0, 0], [1, 0, 0]),
+                 ("right", far, [-1, 0, 0]), ("back", [0, 0, 0], [0, 0, 1]),
+                 ("front", far, [0, 0, -1])][:2 * self.axes - 1]
+        return {"title": f"{self.name}, {cells} cells",
+                "dimension": "solid" if self.axes == 3 else "plane_strain",
                 "duration": 12 * period,
-                "grid": {"cell": cell, "min": [0, 0], "max": [2 * cell, self.HEIGHT + 2 * cell]},
+                "grid": {"cell": cell, "min": self.vector(0, 0, 0),
+                         "max": self.vector(wide, self.HEIGHT + 2 * cell, wide)},
                 "solver": method,
                 "materials": {"soil": {"model": "linear_elastic", "density": self.DENSITY,
                                        "young_modulus": self.MODULUS, "poisson_ratio": 0.0}},
                 "bodies": [{"name": "column", "material": "soil",
-                            "box": {"min": [0, 0], "max": [2 * cell, self.HEIGHT]},
-                            "particles_per_cell": [2, 2]}],
-                "gravity": [0, -self.GRAVITY],
-                "boundaries": [{"name": name, "plane": {"point": point, "normal": normal},
+                            "box": {"min": self.vector(0, 0, 0),
+                                    "max": self.vector(wide, self.HEIGHT, wide)},
+                            "particles_per_cell": self.vector(2, 2, 2)}],
+                "gravity": self.vector(0, -self.GRAVITY, 0),
+                "boundaries": [{"name": name, "plane": {"point": self.vector(*point),
+                                                        "normal": self.vector(*normal)},
                                 "condition": "slip"} for name, point, normal in walls],
                 "probes": [{"name": "centre", "kind": "centre_of_mass", "component": "y"}],
                 "audits": {"energy_growth": 1},  # what damping takes is booked with an error
@@ -207,4 +241,5 @@ class Column:
 
 
 PROBLEMS = [Cantilever(), Manufactured("axis-aligned", (8, 16, 24, 32)),
-            Manufactured("vortex", (24, 32, 40, 48)), DamBreak(), Column()]
+            Manufactured("vortex", (24, 32, 40, 48)), DamBreak(), Column(),
+            Cantilever(3), Column(3)]

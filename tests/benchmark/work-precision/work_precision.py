@@ -20,14 +20,14 @@ def measure(arguments):
     os.environ["TALUS_WORKER"] = str(arguments.programs / "talus-worker")
     os.environ["TALUS_MANUFACTURED"] = str(arguments.programs / "talus-manufactured")
     from methods import METHODS
-    from problems import PROBLEMS, Failed, Refused
+    from problems import PROBLEMS, Failed, Refused, takes
     arguments.out.mkdir(parents=True, exist_ok=True)
     with open(arguments.out / "work-precision.csv", "w", newline="") as file:
         writer = csv.writer(file, lineterminator="\n")
         writer.writerow(COLUMNS)
         for problem in PROBLEMS:
             for label, method in METHODS.items():
-                if arguments.only not in f"{problem.name}: {label}":
+                if arguments.only not in f"{problem.name}: {label}" or not takes(problem, label):
                     continue
                 for resolution in problem.resolutions[:2 if arguments.short else None]:
                     row = [problem.name, label, resolution]
@@ -38,7 +38,7 @@ def measure(arguments):
                     except Refused as refusal:
                         row += ["", "", "", f"refused: {refusal}"]
                     except Failed as failure:
-                        row += ["", "", "", f"failed: {failure}"]
+                        row += ["", "", "", f"failed: {failure}".rstrip()]
                     writer.writerow(row)
                     file.flush()
                     print(*row, file=sys.stderr, flush=True)
