@@ -20,15 +20,7 @@ static enum talus_status write_blob(hid_t group, const struct talus_blob *blob, 
                                .components = 1,
                                .data = blob->data,
                                .packing = HDF5_PLAIN};
-    enum talus_status status = hdf5_write_array(group, &array, error);
-    if (status != TALUS_OK)
-        return status;
-    hid_t dataset = H5Dopen2(group, name, H5P_DEFAULT);
-    if (dataset < 0)
-        return hdf5_error(error, "open dataset", name);
-    status = hdf5_write_attribute(dataset, "name", blob->name, error);
-    (void)H5Dclose(dataset);
-    return status;
+    return hdf5_write_marked_array(group, &array, "name", blob->name, error);
 }
 
 enum talus_status checkpoint_write(const char *path, const char *state,

@@ -149,6 +149,27 @@ static enum talus_status read_descriptor(int descriptor, const char *path, char 
     return TALUS_OK;
 }
 
+enum talus_status file_write_stream(const char *path,
+                                    bool (*write)(FILE *stream, const void *context),
+                                    const void *context, struct talus_error *error)
+{
+    char aside[FILE_PATH_SIZE];
+    enum talus_status status = file_aside_path(aside, path, error);
+    if (status != TALUS_OK)
+        return status;
+    FILE *stream = fopen(aside, "we");
+    if (stream == NULL)
+        return file_error(error, errno, "create", aside);
+    if (!write(stream, context))
+        status = file_error(error, errno, "write", path);
+    if (fclose(stream) != 0 && status == TALUS_OK)
+        status = file_error(error, errno, "write", path);
+    if (status == TALUS_OK)
+        return file_publish(aside, path, error);
+    (void)unlink(aside);
+    return status;
+}
+
 enum talus_status file_read_whole(const char *path, char **text, size_t *length,
                                   struct talus_error *error)
 {
@@ -183,14 +204,9 @@ enum talus_status file_make_folder(const char *path, struct talus_error *error)
     return TALUS_OK;
 }
 
-static int is_aside(const char *name)
-{
-    size_t length = strlen(name);
-    size_t suffix = strlen(ASIDE_SUFFIX);
-    return name[0] == '.' && length > suffix && strcmp(name + length - suffix, ASIDE_SUFFIX) == 0;
-}
-
-enum talus_status file_remove_asides(const char *folder, struct talus_error *error)
+enum talus_status file_remove_some(const char *folder,
+                                   bool (*goes)(const char *name, const void *context),
+                                   const void *context, struct talus_error *error)
 {
     DIR *directory = opendir(folder);
     if (directory == NULL)
@@ -198,9 +214,22 @@ enum talus_status file_remove_asides(const char *folder, struct talus_error *err
     enum talus_status status = TALUS_OK;
     const struct dirent *entry;
     while (status == TALUS_OK && (entry = readdir(directory)) != NULL) {
-        if (is_aside(entry->d_name) && unlinkat(dirfd(directory), entry->d_name, 0) != 0)
+        if (goes(entry->d_name, context) && unlinkat(dirfd(directory), entry->d_name, 0) != 0)
             status = file_error(error, errno, "remove", entry->d_name);
     }
     (void)closedir(directory);
     return status;
+}
+
+static bool is_aside(const char *name, const void *context)
+{
+    size_t length = strlen(name);
+    size_t suffix = strlen(ASIDE_SUFFIX);
+    (void)context;
+    return name[0] == '.' && length > suffix && strcmp(name + length - suffix, ASIDE_SUFFIX) == 0;
+}
+
+enum talus_status file_remove_asides(const char *folder, struct talus_error *error)
+{
+    return file_remove_some(folder, is_aside, NULL, error);
 }

@@ -9,7 +9,9 @@
 
 #include "talus/status.h"
 
+#include <stdbool.h>
 #include <stddef.h>
+#include <stdio.h>
 
 enum { FILE_PATH_SIZE = 4096 };
 
@@ -34,6 +36,13 @@ TALUS_MUST_CHECK enum talus_status file_publish(const char *aside, const char *p
 TALUS_MUST_CHECK enum talus_status file_write_whole(const char *path, const void *data,
                                                     size_t length, struct talus_error *error);
 
+/* Replaces `path` by what `write` puts into the stream, at once; `write` says whether all went
+ * well.
+ */
+TALUS_MUST_CHECK enum talus_status
+file_write_stream(const char *path, bool (*write)(FILE *stream, const void *context),
+                  const void *context, struct talus_error *error);
+
 /* Reads a file; *text (NUL-terminated, `length` bytes without it) belongs to the caller. */
 TALUS_MUST_CHECK enum talus_status file_read_whole(const char *path, char **text, size_t *length,
                                                    struct talus_error *error);
@@ -43,6 +52,11 @@ TALUS_MUST_CHECK enum talus_status file_make_folder(const char *path, struct tal
 
 /* Writes all of `data` to a descriptor; returns 0 or an errno value. */
 TALUS_MUST_CHECK int file_write_all(int descriptor, const void *data, size_t length);
+
+/* Removes the files of `folder` (which may not exist) whose names are to go. */
+TALUS_MUST_CHECK enum talus_status
+file_remove_some(const char *folder, bool (*goes)(const char *name, const void *context),
+                 const void *context, struct talus_error *error);
 
 /* Removes the files written aside that a killed run left in `folder` (which may not exist). */
 TALUS_MUST_CHECK enum talus_status file_remove_asides(const char *folder,

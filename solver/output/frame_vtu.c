@@ -4,12 +4,10 @@
 #include "output/file.h"
 #include "output/frame.h"
 
-#include <errno.h>
 #include <openssl/evp.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <unistd.h>
 
 enum { VTK_VERTEX = 1 };
 
@@ -115,9 +113,19 @@ static bool write_encoded(FILE *stream, const struct vtu_array *array)
 }
 
 /* Sections in the order of the file: fields, then position, connectivity, offsets, types. */
-static bool write_document(FILE *stream, const struct frame *frame, const struct vtu_array *arrays,
-                           size_t count)
+/* What a file holds. */
+struct vtu_document {
+    const struct frame *frame;
+    const struct vtu_array *arrays;
+    size_t count;
+};
+
+static bool write_document(FILE *stream, const void *context)
 {
+    const struct vtu_document *document = context;
+    const struct frame *frame = document->frame;
+    const struct vtu_array *arrays = document->arrays;
+    const size_t count = document->count;
     size_t offset = 0;
     (void)fprintf(stream,
                   "<?xml version=\"1.0\"?>\n<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" "
@@ -143,26 +151,6 @@ static bool write_document(FILE *stream, const struct frame *frame, const struct
     return fflush(stream) == 0 && !ferror(stream);
 }
 
-static enum talus_status write_file(const struct frame *frame, const struct vtu_array *arrays,
-                                    size_t count, const char *path, struct talus_error *error)
-{
-    char aside[FILE_PATH_SIZE];
-    enum talus_status status = file_aside_path(aside, path, error);
-    if (status != TALUS_OK)
-        return status;
-    FILE *stream = fopen(aside, "we");
-    if (stream == NULL)
-        return file_error(error, errno, "create", aside);
-    if (!write_document(stream, frame, arrays, count))
-        status = file_error(error, errno, "write", path);
-    if (fclose(stream) != 0 && status == TALUS_OK)
-        status = file_error(error, errno, "write", path);
-    if (status == TALUS_OK)
-        return file_publish(aside, path, error);
-    (void)unlink(aside);
-    return status;
-}
-
 enum talus_status frame_write_vtu(const struct frame *frame, const char *path,
                                   bool double_precision, struct talus_error *error)
 {
@@ -184,8 +172,9 @@ enum talus_status frame_write_vtu(const struct frame *frame, const char *path,
             status =
                 talus_error_set(error, TALUS_MEMORY, "memory", "", "out of memory for a frame");
     }
+    const struct vtu_document document = {.frame = frame, .arrays = arrays, .count = count};
     if (status == TALUS_OK)
-        status = write_file(frame, arrays, count, path, error);
+        status = file_write_stream(path, write_document, &document, error);
     for (size_t index = 0; index < count; index++)
         free(arrays[index].bytes);
     return status;

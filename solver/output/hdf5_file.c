@@ -269,3 +269,18 @@ enum talus_status hdf5_read_text(hid_t parent, const char *name, char **text,
     (void)H5Dclose(dataset);
     return status;
 }
+
+enum talus_status hdf5_write_marked_array(hid_t parent, const struct hdf5_array *array,
+                                          const char *attribute, const char *text,
+                                          struct talus_error *error)
+{
+    enum talus_status status = hdf5_write_array(parent, array, error);
+    if (status != TALUS_OK)
+        return status;
+    hid_t dataset = H5Dopen2(parent, array->name, H5P_DEFAULT);
+    if (dataset < 0)
+        return hdf5_error(error, "open dataset", array->name);
+    status = hdf5_write_attribute(dataset, attribute, text, error);
+    (void)H5Dclose(dataset);
+    return status;
+}

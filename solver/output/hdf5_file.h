@@ -43,6 +43,11 @@ struct hdf5_array {
 };
 TALUS_MUST_CHECK enum talus_status hdf5_write_array(hid_t parent, const struct hdf5_array *array,
                                                     struct talus_error *error);
+/* The same with one more attribute of the dataset. */
+TALUS_MUST_CHECK enum talus_status hdf5_write_marked_array(hid_t parent,
+                                                           const struct hdf5_array *array,
+                                                           const char *attribute, const char *text,
+                                                           struct talus_error *error);
 
 /* A scalar dataset of UTF-8 text, and one that is read back (*text belongs to the caller). */
 TALUS_MUST_CHECK enum talus_status hdf5_write_text(hid_t parent, const char *name, const char *text,

@@ -3,11 +3,8 @@
 #include "output/file.h"
 #include "output/history.h"
 
-#include <errno.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
-#include <unistd.h>
 
 static bool is_chosen(const struct talus_column *column, size_t index, const char *prefix)
 {
@@ -35,8 +32,17 @@ static void write_number(FILE *stream, double value)
     (void)fwrite(text, 1, decimal_write(text, value), stream);
 }
 
-static bool write_table(FILE *stream, const struct history_table *table, const char *prefix)
+/* The columns of a table whose names begin so. */
+struct selection {
+    const struct history_table *table;
+    const char *prefix;
+};
+
+static bool write_table(FILE *stream, const void *context)
 {
+    const struct selection *selection = context;
+    const struct history_table *table = selection->table;
+    const char *prefix = selection->prefix;
     for (size_t column = 0; column < table->column_count; column++) {
         if (!is_chosen(&table->columns[column], column, prefix))
             continue;
@@ -61,19 +67,6 @@ static bool write_table(FILE *stream, const struct history_table *table, const c
 enum talus_status history_write_csv(const struct history_table *table, const char *path,
                                     const char *prefix, struct talus_error *error)
 {
-    char aside[FILE_PATH_SIZE];
-    enum talus_status status = file_aside_path(aside, path, error);
-    if (status != TALUS_OK)
-        return status;
-    FILE *stream = fopen(aside, "we");
-    if (stream == NULL)
-        return file_error(error, errno, "create", aside);
-    if (!write_table(stream, table, prefix))
-        status = file_error(error, errno, "write", path);
-    if (fclose(stream) != 0 && status == TALUS_OK)
-        status = file_error(error, errno, "write", path);
-    if (status == TALUS_OK)
-        return file_publish(aside, path, error);
-    (void)unlink(aside);
-    return status;
+    const struct selection selection = {.table = table, .prefix = prefix};
+    return file_write_stream(path, write_table, &selection, error);
 }

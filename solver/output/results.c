@@ -34,15 +34,7 @@ static enum talus_status write_series(hid_t group, const struct history_table *t
                                .components = 1,
                                .data = values,
                                .packing = HDF5_PACKED};
-    enum talus_status status = hdf5_write_array(group, &array, error);
-    if (status != TALUS_OK)
-        return status;
-    hid_t dataset = H5Dopen2(group, name, H5P_DEFAULT);
-    if (dataset < 0)
-        return hdf5_error(error, "open dataset", name);
-    status = hdf5_write_attribute(dataset, "series", table->columns[column].name, error);
-    (void)H5Dclose(dataset);
-    return status;
+    return hdf5_write_marked_array(group, &array, "series", table->columns[column].name, error);
 }
 
 static enum talus_status write_group(hid_t file, const struct history_table *table,

@@ -3,12 +3,9 @@
 
 #include "output/file.h"
 
-#include <dirent.h>
-#include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <unistd.h>
 
 static enum talus_status no_memory(struct talus_error *error)
 {
@@ -127,30 +124,19 @@ enum talus_status frame_list_write_pvd(const struct frame_list *list, const char
     return status;
 }
 
-/* The number in PREFIX_NNNNNN.EXTENSION; false for other names. */
-static int frame_number(const char *name, size_t *number)
+/* Whether a name is PREFIX_NNNNNN.EXTENSION with a number from *context on. */
+static bool is_later(const char *name, const void *context)
 {
+    const size_t *count = context;
     const char *underline = strrchr(name, '_');
     char *end = NULL;
     if (underline == NULL || underline[1] < '0' || underline[1] > '9')
-        return 0;
-    *number = strtoul(underline + 1, &end, 10);
-    return *end == '.';
+        return false;
+    size_t number = strtoul(underline + 1, &end, 10);
+    return *end == '.' && number >= *count;
 }
 
 enum talus_status frame_list_trim(const char *folder, size_t count, struct talus_error *error)
 {
-    DIR *directory = opendir(folder);
-    if (directory == NULL)
-        return errno == ENOENT ? TALUS_OK : file_error(error, errno, "list", folder);
-    enum talus_status status = TALUS_OK;
-    const struct dirent *entry;
-    while (status == TALUS_OK && (entry = readdir(directory)) != NULL) {
-        size_t number = 0;
-        if (frame_number(entry->d_name, &number) && number >= count &&
-            unlinkat(dirfd(directory), entry->d_name, 0) != 0)
-            status = file_error(error, errno, "remove", entry->d_name);
-    }
-    (void)closedir(directory);
-    return status;
+    return file_remove_some(folder, is_later, &count, error);
 }
