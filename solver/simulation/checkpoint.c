@@ -366,14 +366,8 @@ enum talus_status talus_simulation_restore(const struct talus_scene *scene,
             return talus_error_set(error, TALUS_INVALID, "checkpoint", "",
                                    "the checkpoint has no part '%s'", blob_names[index]);
     }
-    struct talus_simulation *created = calloc(1, sizeof *created);
-    if (created == NULL)
-        return talus_error_set(error, TALUS_MEMORY, "memory", "", "out of memory");
-    thread_choice_init(&created->choice);
-    created->all_threads = options->all_threads;
-    enum talus_status status = simulation_check_precision(scene, error);
-    if (status == TALUS_OK)
-        status = run_build(&created->run, scene, options, error);
+    struct talus_simulation *created;
+    enum talus_status status = simulation_begin(scene, options, &created, error);
     if (status == TALUS_OK && !restore_state(created, found))
         status = talus_error_set(error, TALUS_INVALID, "checkpoint", "",
                                  "the checkpoint does not belong to this scene and build");

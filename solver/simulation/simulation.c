@@ -183,8 +183,8 @@ static enum talus_status prepare(struct talus_simulation *simulation, struct tal
     return TALUS_OK;
 }
 
-enum talus_status simulation_check_precision(const struct talus_scene *scene,
-                                             struct talus_error *error)
+/* TALUS_UNSUPPORTED if the scene asks for the precision that this build does not have. */
+static enum talus_status check_precision(const struct talus_scene *scene, struct talus_error *error)
 {
     if (scene->solver.precision == talus_simulation_precision())
         return TALUS_OK;
@@ -192,6 +192,22 @@ enum talus_status simulation_check_precision(const struct talus_scene *scene,
                            "this solver is built for %s precision",
                            talus_simulation_precision() == TALUS_PRECISION_SINGLE ? "single"
                                                                                   : "double");
+}
+
+enum talus_status simulation_begin(const struct talus_scene *scene,
+                                   const struct talus_simulation_options *options,
+                                   struct talus_simulation **simulation, struct talus_error *error)
+{
+    struct talus_simulation *created = calloc(1, sizeof *created);
+    *simulation = created;
+    if (created == NULL)
+        return talus_error_set(error, TALUS_MEMORY, "memory", "", "out of memory");
+    thread_choice_init(&created->choice);
+    created->all_threads = options->all_threads;
+    enum talus_status status = check_precision(scene, error);
+    if (status == TALUS_OK)
+        status = run_build(&created->run, scene, options, error);
+    return status;
 }
 
 /* Once each, when it happens first. */
@@ -224,15 +240,9 @@ enum talus_status talus_simulation_create(const struct talus_scene *scene,
                                           struct talus_simulation **simulation,
                                           struct talus_error *error)
 {
-    struct talus_simulation *created = calloc(1, sizeof *created);
+    struct talus_simulation *created;
+    enum talus_status status = simulation_begin(scene, options, &created, error);
     *simulation = NULL;
-    if (created == NULL)
-        return talus_error_set(error, TALUS_MEMORY, "memory", "", "out of memory");
-    thread_choice_init(&created->choice);
-    created->all_threads = options->all_threads;
-    enum talus_status status = simulation_check_precision(scene, error);
-    if (status == TALUS_OK)
-        status = run_build(&created->run, scene, options, error);
     if (status == TALUS_OK)
         status = place_particles(&created->run, error);
     if (status == TALUS_OK)

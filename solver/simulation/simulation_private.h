@@ -39,9 +39,13 @@ __attribute__((format(printf, 4, 5))) void simulation_warn(struct talus_simulati
                                                            const char *format, ...);
 
 /* ---- simulation.c ---- */
-/* TALUS_UNSUPPORTED if the scene asks for the precision that this build does not have. */
-TALUS_MUST_CHECK enum talus_status simulation_check_precision(const struct talus_scene *scene,
-                                                              struct talus_error *error);
+/* Begins a simulation, without particles. *simulation (NULL without memory) is the caller's, also
+ * on failure. TALUS_UNSUPPORTED if the scene asks for the precision that this build does not have.
+ */
+TALUS_MUST_CHECK enum talus_status simulation_begin(const struct talus_scene *scene,
+                                                    const struct talus_simulation_options *options,
+                                                    struct talus_simulation **simulation,
+                                                    struct talus_error *error);
 
 /* ---- build.c: from the scene, without particles ---- */
 TALUS_MUST_CHECK enum talus_status run_build(struct run *run, const struct talus_scene *scene,
