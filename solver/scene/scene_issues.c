@@ -136,6 +136,15 @@ void scene_mistake_at(struct scene_reader *reader, const char *pointer, const ch
     (void)snprintf(issue->pointer, sizeof issue->pointer, "%s", pointer);
 }
 
+void scene_file_mistake(struct scene_reader *reader, const json_error_t *error)
+{
+    if (error->line < 0)
+        scene_mistake(reader, NULL, "file", NULL, NULL, "%s", error->text);
+    else
+        scene_mistake(reader, NULL, "json", NULL, NULL, "line %d, column %d: %s", error->line,
+                      error->column, error->text);
+}
+
 void scene_warn(struct scene_reader *reader, const struct scene_path *path, const char *code,
                 const char *format, ...)
 {

@@ -261,11 +261,7 @@ enum talus_status scene_point_read_file(const char *path, struct scene_point *po
     struct scene_reader reader = {.issues = issues};
     memset(point, 0, sizeof *point);
     memset(issues, 0, sizeof *issues);
-    if (error.line < 0)
-        scene_mistake(&reader, NULL, "file", NULL, NULL, "%s", error.text);
-    else
-        scene_mistake(&reader, NULL, "json", NULL, NULL, "line %d, column %d: %s", error.line,
-                      error.column, error.text);
+    scene_file_mistake(&reader, &error);
     return TALUS_INVALID;
 }
 

@@ -202,10 +202,6 @@ enum talus_status scene_read_file(const char *path, struct talus_scene *scene, j
     memset(issues, 0, sizeof *issues);
     memset(warnings, 0, sizeof *warnings);
     *effective = NULL;
-    if (error.line < 0)
-        scene_mistake(&reader, NULL, "file", NULL, NULL, "%s", error.text);
-    else
-        scene_mistake(&reader, NULL, "json", NULL, NULL, "line %d, column %d: %s", error.line,
-                      error.column, error.text);
+    scene_file_mistake(&reader, &error);
     return TALUS_INVALID;
 }

@@ -39,6 +39,9 @@ __attribute__((format(printf, 4, 5))) void scene_warn(struct scene_reader *reade
 void scene_mistake_at(struct scene_reader *reader, const char *pointer, const char *code,
                       const char *detail);
 
+/* Why a document could not be read: the file, or JSON. */
+void scene_file_mistake(struct scene_reader *reader, const json_error_t *error);
+
 /* Characters of UTF-8 text, as JSON Schema counts them. */
 size_t scene_character_count(const char *text);
 /* "object", "array", "string", "number", "boolean", "null" or "nothing" (NULL). */
