@@ -1,9 +1,15 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 #include "scene_fixture.h"
 
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+
+#include <cmocka.h>
 
 static const char *const bases[] = {
     [BASE_PLANE] =
@@ -99,6 +105,18 @@ void fixture_read(const json_t *root, struct fixture_result *result)
 {
     result->status =
         scene_read(root, &result->scene, &result->effective, &result->issues, &result->warnings);
+}
+
+struct fixture_result fixture_read_valid(json_t *scene)
+{
+    struct fixture_result result;
+    fixture_read(scene, &result);
+    for (size_t index = 0; index < result.issues.count; index++)
+        (void)fprintf(stderr, "%s: %s\n", result.issues.items[index].pointer,
+                      result.issues.items[index].detail);
+    assert_int_equal(result.status, TALUS_OK);
+    json_decref(scene);
+    return result;
 }
 
 void fixture_result_release(struct fixture_result *result)

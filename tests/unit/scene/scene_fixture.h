@@ -26,6 +26,8 @@ struct fixture_result {
     struct scene_issues issues, warnings;
 };
 void fixture_read(const json_t *root, struct fixture_result *result);
+/* Reads a scene that must be valid (the reference is taken). */
+struct fixture_result fixture_read_valid(json_t *scene);
 void fixture_result_release(struct fixture_result *result);
 
 /* The first issue with that pointer and code, or NULL. */

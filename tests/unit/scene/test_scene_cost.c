@@ -14,18 +14,6 @@
 
 #include <cmocka.h>
 
-static struct fixture_result read_valid(json_t *scene)
-{
-    struct fixture_result result;
-    fixture_read(scene, &result);
-    for (size_t index = 0; index < result.issues.count; index++)
-        (void)fprintf(stderr, "%s: %s\n", result.issues.items[index].pointer,
-                      result.issues.items[index].detail);
-    assert_int_equal(result.status, TALUS_OK);
-    json_decref(scene);
-    return result;
-}
-
 static json_t *forecast(const struct talus_scene *scene, int threads)
 {
     struct talus_error error = {.status = TALUS_OK};
@@ -44,7 +32,7 @@ static double number(const json_t *object, const char *key)
 static void the_forecast_counts(void **state)
 {
     (void)state;
-    struct fixture_result result = read_valid(fixture_scene(BASE_PLANE));
+    struct fixture_result result = fixture_read_valid(fixture_scene(BASE_PLANE));
     json_t *one = forecast(&result.scene, 1);
     const json_t *wall = json_object_get(one, "wall_seconds");
     assert_true(number(one, "particles") == 16.0 * 8.0);
@@ -68,7 +56,7 @@ static void the_forecast_counts(void **state)
 static void bodies_are_reported(void **state)
 {
     (void)state;
-    struct fixture_result result = read_valid(fixture_scene(BASE_SOLID));
+    struct fixture_result result = fixture_read_valid(fixture_scene(BASE_SOLID));
     json_t *answer = forecast(&result.scene, 1);
     const json_t *body = json_array_get(json_object_get(answer, "bodies"), 0);
     const double exact = 4.0 / 3.0 * 3.14159265358979323846;
@@ -84,16 +72,16 @@ static void bodies_are_reported(void **state)
 static void more_costs_more(void **state)
 {
     (void)state;
-    struct fixture_result small = read_valid(fixture_scene(BASE_PLANE));
+    struct fixture_result small = fixture_read_valid(fixture_scene(BASE_PLANE));
     json_t *scene = fixture_scene(BASE_PLANE);
     fixture_change(scene, "/bodies/0/particles_per_cell", "[40, 40]");
     fixture_change(scene, "/output", "{\"frames\": {\"every\": 0.01, \"precision\": \"double\"}}");
-    struct fixture_result large = read_valid(scene);
+    struct fixture_result large = fixture_read_valid(scene);
     /* Nothing but steps: one thread alone compresses frames, beside those that step. */
     json_t *quiet = fixture_scene(BASE_PLANE);
     fixture_change(quiet, "/bodies/0/particles_per_cell", "[40, 40]");
     fixture_change(quiet, "/output", "{\"frames\": {\"every\": 2.0}}");
-    struct fixture_result stepping = read_valid(quiet);
+    struct fixture_result stepping = fixture_read_valid(quiet);
     json_t *low = forecast(&small.scene, 1), *high = forecast(&large.scene, 1);
     json_t *serial = forecast(&stepping.scene, 1), *parallel = forecast(&stepping.scene, 2);
     assert_true(number(high, "particles") == 400.0 * number(low, "particles"));

@@ -21,23 +21,10 @@
 #define ASSERT_WITHIN(value, expected, tolerance)                                                  \
     assert_true(fabs((value) - (expected)) <= (tolerance))
 
-/* Reads a changed base that must be valid. */
-static struct fixture_result read_valid(json_t *scene)
-{
-    struct fixture_result result;
-    fixture_read(scene, &result);
-    for (size_t index = 0; index < result.issues.count; index++)
-        (void)fprintf(stderr, "%s: %s\n", result.issues.items[index].pointer,
-                      result.issues.items[index].detail);
-    assert_int_equal(result.status, TALUS_OK);
-    json_decref(scene);
-    return result;
-}
-
 static void values_arrive(void **state)
 {
     (void)state;
-    struct fixture_result result = read_valid(fixture_scene(BASE_PLANE));
+    struct fixture_result result = fixture_read_valid(fixture_scene(BASE_PLANE));
     const struct talus_scene *scene = &result.scene;
     assert_int_equal(scene->dimension, TALUS_PLANE_STRAIN);
     assert_int_equal(scene->axis_count, 2);
@@ -79,7 +66,7 @@ static void values_arrive(void **state)
 static void defaults_are_the_documented_ones(void **state)
 {
     (void)state;
-    struct fixture_result result = read_valid(fixture_scene(BASE_SOLID));
+    struct fixture_result result = fixture_read_valid(fixture_scene(BASE_SOLID));
     const struct talus_scene *scene = &result.scene;
     const struct talus_solver_options *solver = &scene->solver;
     assert_string_equal(scene->title, "");
@@ -118,7 +105,7 @@ static void faces_have_axes_and_sizes(void **state)
     fixture_change(scene, "/boundaries/-",
                    "{\"face\": {\"point\": [5, 5, 9], \"normal\": [0, 0, -2], \"size\": [3, 4]},"
                    " \"condition\": \"slip\"}");
-    struct fixture_result result = read_valid(scene);
+    struct fixture_result result = fixture_read_valid(scene);
     const struct talus_boundary *first = &result.scene.boundaries[0];
     const struct talus_boundary *second = &result.scene.boundaries[1];
     /* normal y: t1 = z, t2 = y x z = x */
@@ -143,7 +130,7 @@ static void faces_in_a_plane_are_lines(void **state)
     fixture_change(scene, "/boundaries/-",
                    "{\"face\": {\"min\": [0.5, 0], \"max\": [4, 0], \"normal\": [0, 1]},"
                    " \"condition\": \"slip\"}");
-    struct fixture_result result = read_valid(scene);
+    struct fixture_result result = fixture_read_valid(scene);
     const struct talus_boundary *face = &result.scene.boundaries[2];
     ASSERT_WITHIN(fabs(face->axis_1[0]), 1.0, 0.0);
     ASSERT_WITHIN(face->size[0], 3.5, 1e-12);
@@ -159,7 +146,7 @@ static void boxes_have_faces_of_their_own(void **state)
                    "{\"y_max\": {\"condition\": \"friction\", \"friction_coefficient\": 0.3}}");
     fixture_change(scene, "/boundaries/1/tension_release", "-5");
     fixture_change(scene, "/boundaries/1/area_rule", "\"source\"");
-    struct fixture_result result = read_valid(scene);
+    struct fixture_result result = fixture_read_valid(scene);
     const struct talus_boundary *box = &result.scene.boundaries[1];
     assert_string_equal(boundary_table[box->faces[3].condition_index]->name, "friction");
     ASSERT_WITHIN(box->faces[3].friction_coefficient, 0.3, 0.0);
@@ -183,7 +170,7 @@ static void boundaries_move_and_come_and_go(void **state)
                    "{\"plane\": {\"point\": [0, 0], \"normal\": [0, 1]},"
                    " \"condition\": \"velocity\", \"velocity\": [3, 0], \"stays\": true,"
                    " \"from\": 0.5}");
-    struct fixture_result result = read_valid(scene);
+    struct fixture_result result = fixture_read_valid(scene);
     const struct talus_boundary *piston = &result.scene.boundaries[2];
     assert_int_equal(piston->prescribed, 2);
     assert_int_equal(piston->velocity_tables[0].count, 0);
@@ -221,7 +208,7 @@ static void initial_stresses_have_many_forms(void **state)
     for (size_t index = 0; index < sizeof forms / sizeof forms[0]; index++) {
         json_t *scene = fixture_scene(BASE_PLANE);
         fixture_change(scene, "/bodies/0/initial_stress", forms[index].value);
-        struct fixture_result result = read_valid(scene);
+        struct fixture_result result = fixture_read_valid(scene);
         const struct talus_body *body = &result.scene.bodies[0];
         assert_int_equal(body->initial_stress, forms[index].kind);
         assert_int_equal(body->k0_rule, forms[index].rule);
@@ -236,13 +223,13 @@ static void grids_are_rounded_up(void **state)
     (void)state;
     json_t *scene = fixture_scene(BASE_PLANE);
     fixture_change(scene, "/grid/max", "[20.1, 10]");
-    struct fixture_result result = read_valid(scene);
+    struct fixture_result result = fixture_read_valid(scene);
     const json_t *max = json_object_get(json_object_get(result.effective, "grid"), "max");
     assert_int_equal(result.scene.grid.cell_count[0], 41);
     ASSERT_WITHIN(json_number_value(json_array_get(max, 0)), 20.5, 1e-12);
     fixture_result_release(&result);
     scene = fixture_scene(BASE_FLUID); /* 0.3 / 0.01 is not quite 30 */
-    result = read_valid(scene);
+    result = fixture_read_valid(scene);
     assert_int_equal(result.scene.grid.cell_count[0], 30);
     assert_int_equal(result.scene.grid.cell_count[1], 14);
     fixture_result_release(&result);
@@ -263,7 +250,7 @@ static void the_effective_scene_is_a_fixed_point(void **state)
             fixture_change(scene, "/probes", "[{\"kind\": \"centre_of_mass\"}]");
         if (base == BASE_PLANE)
             fixture_change(scene, "/references", "[{\"probe\": \"probe_1\", \"value\": 2}]");
-        struct fixture_result first = read_valid(scene), second;
+        struct fixture_result first = fixture_read_valid(scene), second;
         fixture_read(first.effective, &second);
         for (size_t index = 0; index < second.issues.count; index++)
             (void)fprintf(stderr, "%s: %s\n", second.issues.items[index].pointer,
@@ -282,7 +269,7 @@ static void the_effective_scene_is_a_fixed_point(void **state)
 
 static void hash_of(json_t *scene, char hash[65])
 {
-    struct fixture_result result = read_valid(scene);
+    struct fixture_result result = fixture_read_valid(scene);
     scene_hash(result.effective, hash);
     fixture_result_release(&result);
 }
@@ -315,7 +302,7 @@ static void assert_warning(const char *pointer, const char *value, const char *w
 {
     json_t *scene = fixture_scene(BASE_PLANE);
     fixture_change(scene, pointer, value);
-    struct fixture_result result = read_valid(scene);
+    struct fixture_result result = fixture_read_valid(scene);
     assert_int_equal(result.warnings.count, 1);
     const struct scene_issue *warning = fixture_find(&result.warnings, where, code);
     assert_non_null(warning);
