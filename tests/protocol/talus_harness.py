@@ -204,8 +204,11 @@ class Daemon:
         os.chmod(path, os.stat(path).st_mode | stat.S_IXUSR)
         return path
 
-    def start(self, wait=True):
-        command = [TALUSD, "--state", self.state, "--listen", f"127.0.0.1:{self.port}",
+    def start(self, wait=True, listen=None):
+        """Returns when it is ready or, at another address than its loopback port, when it listens
+        or has ended."""
+        address = listen or f"127.0.0.1:{self.port}"
+        command = [TALUSD, "--state", self.state, "--listen", address,
                    "--workers", str(self.workers), "--worker-program", self.program,
                    "--config", self.config]
         # What the address sanitizer keeps of freed memory would count as the daemon's.
@@ -213,7 +216,10 @@ class Daemon:
         with open(self.log, "ab") as log:
             self.process = subprocess.Popen(command, stdin=subprocess.DEVNULL, stdout=log, stderr=log,
                                             env=environment, start_new_session=True)
-        if wait:
+        if listen:
+            wait_for(lambda: "listening on" in self.tail() or self.process.poll() is not None, 30,
+                     f"daemon up: {self.tail()}")
+        elif wait:
             wait_for(self.answers, 30, f"daemon up: {self.tail()}")
         return self
 

@@ -2,14 +2,12 @@
 """The audit log: every change with who made it, before its answer; refusals, but not all of a flood."""
 import datetime
 import http.client
-import json
 import os
 import socket
-import subprocess
 import unittest
 
-from access_harness import TOKENS, TokenTest, audit_lines, token_daemon, token_lines, token_of
-from talus_harness import PATIENCE, TALUSD, Daemon, fake_scene, wait_for
+from access_harness import TokenTest, audit_lines, token_daemon, token_of
+from talus_harness import PATIENCE, fake_scene, wait_for
 
 
 class Changes(TokenTest):
@@ -194,12 +192,7 @@ class Crashes(unittest.TestCase):
     def test_unix_socket_tells_the_user(self):
         daemon = self.daemon()
         path = os.path.join(daemon.folder, "s")
-        with open(daemon.log, "ab") as log:
-            daemon.process = subprocess.Popen(
-                [TALUSD, "--state", daemon.state, "--listen", f"unix:{path}", "--worker-program",
-                 daemon.program, "--config", daemon.config], stdin=subprocess.DEVNULL, stdout=log,
-                stderr=log)
-        wait_for(lambda: "listening on" in daemon.tail(), 30, "daemon up")
+        daemon.start(listen=f"unix:{path}")
         with socket.socket(socket.AF_UNIX) as stream:
             stream.settimeout(20 * PATIENCE)
             stream.connect(path)

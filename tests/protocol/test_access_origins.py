@@ -3,10 +3,9 @@
 import json
 import os
 import socket
-import subprocess
 import unittest
 
-from talus_harness import PATIENCE, TALUSD, Daemon, DaemonTest, fake_scene, free_port, wait_for
+from talus_harness import PATIENCE, Daemon, DaemonTest, fake_scene, free_port
 
 PAGE = "https://page.example:8443"
 
@@ -108,12 +107,7 @@ class UnixSocket(unittest.TestCase):
         daemon = Daemon(config={"hosts": ["talus.example"], "cors_origins": [PAGE]})
         self.addCleanup(lambda: self.assertEqual(daemon.close(), ""))
         path = os.path.join(daemon.folder, "s")
-        with open(daemon.log, "ab") as log:
-            daemon.process = subprocess.Popen(
-                [TALUSD, "--state", daemon.state, "--listen", f"unix:{path}", "--worker-program",
-                 daemon.program, "--config", daemon.config], stdin=subprocess.DEVNULL, stdout=log,
-                stderr=log)
-        wait_for(lambda: "listening on" in daemon.tail(), 30, "daemon up")
+        daemon.start(listen=f"unix:{path}")
         for fields, status in ((["Host: localhost"], 200), (["Host: talus.example"], 200),
                                (["Host: evil.example"], 403),
                                (["Host: localhost", "Origin: http://localhost"], 200),
@@ -137,13 +131,7 @@ class SixthVersion(unittest.TestCase):
         daemon = Daemon()
         self.addCleanup(lambda: self.assertEqual(daemon.close(), ""))
         port = free_port()
-        with open(daemon.log, "ab") as log:
-            daemon.process = subprocess.Popen(
-                [TALUSD, "--state", daemon.state, "--listen", f"[::1]:{port}",
-                 "--worker-program", daemon.program], stdin=subprocess.DEVNULL, stdout=log,
-                stderr=log)
-        wait_for(lambda: "listening on" in daemon.tail() or daemon.process.poll() is not None, 30,
-                 "daemon up")
+        daemon.start(listen=f"[::1]:{port}")
         if daemon.process.poll() is not None and "Address family not supported" in daemon.tail():
             self.skipTest("this machine has no IPv6")
         with socket.create_connection(("::1", port), 20 * PATIENCE) as stream:

@@ -267,39 +267,31 @@ class SlowClients(RawTest):
         self.refused(self.head(f"GET /v1/jobs?{query} HTTP/1.1"), (400, 414, 422, 431, None), timeout=12)
         self.assertLess(time.monotonic() - begin, 8 * PATIENCE)
 
+    def assert_drip_is_closed(self, begin_with, byte):
+        """A request that begins so, and goes on with a byte now and then, is cut off."""
+        begin = time.monotonic()
+        with socket.create_connection(("127.0.0.1", self.daemon.port), timeout=1) as stream:
+            stream.sendall(begin_with)
+            closed = False
+            while not closed and time.monotonic() - begin < 12 * PATIENCE:
+                try:
+                    stream.sendall(byte)
+                    stream.settimeout(0.5)
+                    closed = stream.recv(1000) == b"" or closed
+                except TimeoutError:
+                    pass
+                except OSError:
+                    closed = True
+        self.assertTrue(closed, f"without end: {begin_with}")
+
     def test_slow_loris_is_closed(self):
         """A head that never ends, byte by byte, must not hold a connection for long."""
-        begin = time.monotonic()
-        with socket.create_connection(("127.0.0.1", self.daemon.port), timeout=1) as stream:
-            stream.sendall(b"GET /v1/version HTTP/1.1\r\nHost: 127.0.0.1\r\nX-Slow: ")
-            closed = False
-            while not closed and time.monotonic() - begin < 12 * PATIENCE:
-                try:
-                    stream.sendall(b"a")
-                    stream.settimeout(0.5)
-                    closed = stream.recv(1000) == b"" or closed
-                except TimeoutError:
-                    pass
-                except OSError:
-                    closed = True
-        self.assertTrue(closed, "a head without end")
+        self.assert_drip_is_closed(b"GET /v1/version HTTP/1.1\r\nHost: 127.0.0.1\r\nX-Slow: ", b"a")
 
     def test_slow_body_is_closed(self):
-        begin = time.monotonic()
-        with socket.create_connection(("127.0.0.1", self.daemon.port), timeout=1) as stream:
-            stream.sendall((f"POST /v1/jobs HTTP/1.1\r\nHost: 127.0.0.1:{self.daemon.port}\r\n"
-                            "Content-Type: application/json\r\nContent-Length: 10000\r\n\r\n").encode())
-            closed = False
-            while not closed and time.monotonic() - begin < 12 * PATIENCE:
-                try:
-                    stream.sendall(b" ")
-                    stream.settimeout(0.5)
-                    closed = stream.recv(1000) == b"" or closed
-                except TimeoutError:
-                    pass
-                except OSError:
-                    closed = True
-        self.assertTrue(closed, "a body without end")
+        self.assert_drip_is_closed(
+            self.head("POST /v1/jobs HTTP/1.1", "Content-Type: application/json",
+                      "Content-Length: 10000"), b" ")
 
     def test_idle_connections_do_not_block(self):
         idle = [socket.create_connection(("127.0.0.1", self.daemon.port)) for _ in range(200)]

@@ -2,7 +2,6 @@
 """What advice claims to save, against what it saves, and what that does to the answer."""
 import json
 import math
-import pathlib
 import subprocess
 
 from verification import FULL, Verification, on_linear_shapes, shipped_scene, worker

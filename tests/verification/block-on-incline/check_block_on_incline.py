@@ -3,7 +3,7 @@
 a = g (sin - mu cos) above it, whichever way the plane is turned."""
 import math
 
-from verification import FULL, Verification, particle_bodies, shipped_scene
+from verification import Verification, particle_bodies, shipped_scene
 
 G, ANGLE = 9.81, math.radians(30)
 ALONG, ACROSS = G * math.sin(ANGLE), G * math.cos(ANGLE)

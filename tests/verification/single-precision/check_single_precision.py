@@ -223,7 +223,7 @@ def check_refusals(verification):
         found = [(error["pointer"], error["code"]) for error in answer["errors"]]
         verification.equal(f"{name}, single: check", found, [("/solver/precision", "precision")])
         folder = verification.new_folder()
-        run = verification.run(in_single(scene), expected_exit=10, folder=folder)
+        verification.run(in_single(scene), expected_exit=10, folder=folder)
         verification.equal(f"{name}, single: files of a run", list(folder.iterdir()), [])
     stiff = dam_break(0.0114)
     stiff["materials"]["water"]["bulk_modulus"] = 2e9
