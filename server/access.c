@@ -61,11 +61,6 @@ bool access_is_local(const struct access *access)
     return access->local;
 }
 
-bool access_is_required(const struct access *access)
-{
-    return access->required;
-}
-
 bool access_is_stale(struct access *access)
 {
     return tokens_are_stale(access->tokens);

@@ -21,8 +21,6 @@ void access_destroy(struct access *access);
 TALUS_MUST_CHECK enum talus_status access_reload(struct access *access, struct talus_error *error);
 /* Whether the daemon listens on loopback or a Unix socket. */
 bool access_is_local(const struct access *access);
-/* Whether a token is asked of everyone. */
-bool access_is_required(const struct access *access);
 /* Whether the file of tokens has a mistake, so that older ones are in force. */
 bool access_is_stale(struct access *access);
 size_t access_token_count(struct access *access);

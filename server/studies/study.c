@@ -58,11 +58,6 @@ enum row_state row_state_of_job(enum job_state state)
     return states[state];
 }
 
-bool row_state_final(enum row_state state)
-{
-    return state >= ROW_SUCCEEDED;
-}
-
 int64_t study_active_count(const struct study *study)
 {
     return study->counts[ROW_QUEUED] + study->counts[ROW_RUNNING];

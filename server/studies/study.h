@@ -57,7 +57,6 @@ enum study_state study_state_find(const char *name);
 const char *study_kind_name(enum study_kind kind);
 const char *row_state_name(enum row_state state);
 enum row_state row_state_of_job(enum job_state state);
-bool row_state_final(enum row_state state);
 /* Rows that are jobs and have not ended. */
 int64_t study_active_count(const struct study *study);
 /* Rows that have ended. */
