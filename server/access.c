@@ -31,7 +31,7 @@ enum talus_status access_create(struct access **result, const struct config *con
                                "require_token needs a file of tokens (--tokens)");
     struct access *access = calloc(1, sizeof *access);
     if (access == NULL)
-        return talus_error_set(error, TALUS_MEMORY, "memory", "", "out of memory");
+        return talus_error_memory(error);
     access->local = local;
     access->required = !local || config->require_token;
     enum talus_status status = tokens_create(&access->tokens, config->tokens, error);

@@ -193,7 +193,7 @@ enum talus_status audit_create(struct audit **result, const char *folder,
     struct audit *audit = calloc(1, sizeof *audit);
     *result = NULL;
     if (audit == NULL)
-        return talus_error_set(error, TALUS_MEMORY, "memory", "", "out of memory");
+        return talus_error_memory(error);
     (void)pthread_mutex_init(&audit->mutex, NULL);
     (void)pthread_mutex_init(&audit->file_mutex, NULL);
     (void)pthread_cond_init(&audit->wake, NULL);
@@ -201,8 +201,7 @@ enum talus_status audit_create(struct audit **result, const char *folder,
     audit->descriptor = -1;
     audit->folder = strdup(folder);
     enum talus_status status =
-        audit->folder == NULL ? talus_error_set(error, TALUS_MEMORY, "memory", "", "out of memory")
-                              : audit_start(audit, error);
+        audit->folder == NULL ? talus_error_memory(error) : audit_start(audit, error);
     if (status == TALUS_OK)
         *result = audit;
     else

@@ -65,7 +65,7 @@ enum talus_status calibration_create(struct calibration **result, struct store *
     struct calibration *calibration = calloc(1, sizeof *calibration);
     *result = calibration;
     if (calibration == NULL)
-        return talus_error_set(error, TALUS_MEMORY, "memory", "", "out of memory");
+        return talus_error_memory(error);
     calibration->store = store;
     (void)pthread_mutex_init(&calibration->mutex, NULL);
     processor_name(calibration->processor, sizeof calibration->processor);

@@ -94,9 +94,8 @@ enum talus_status checksum_json(const json_t *value, char checksum[CHECKSUM_SIZE
     char *text = normalised == NULL
                      ? NULL
                      : json_dumps(normalised, JSON_COMPACT | JSON_SORT_KEYS | JSON_ENCODE_ANY);
-    enum talus_status status =
-        text == NULL ? talus_error_set(error, TALUS_MEMORY, "memory", "", "out of memory")
-                     : checksum_memory(text, strlen(text), checksum, error);
+    enum talus_status status = text == NULL ? talus_error_memory(error)
+                                            : checksum_memory(text, strlen(text), checksum, error);
     free(text);
     json_decref(normalised);
     return status;

@@ -10,11 +10,6 @@
 #include <string.h>
 #include <unistd.h>
 
-static enum talus_status out_of_memory(struct talus_error *error)
-{
-    return talus_error_set(error, TALUS_MEMORY, "memory", "", "out of memory");
-}
-
 static enum talus_status usage_error(struct talus_error *error, const char *text)
 {
     return talus_error_set(error, TALUS_INVALID, "usage", "", "%s (see talusd --help)", text);
@@ -117,7 +112,7 @@ static enum talus_status arguments_read(struct config *config, int argument_coun
         }
     }
     if (!good)
-        return out_of_memory(error);
+        return talus_error_memory(error);
     return optind < argument_count ? usage_error(error, "too many arguments") : TALUS_OK;
 }
 
@@ -132,7 +127,7 @@ static enum talus_status state_find(struct config *config, struct talus_error *e
         config->state = folder_join(home, ".local/state/talus");
     else
         return usage_error(error, "--state is needed: neither XDG_STATE_HOME nor HOME is set");
-    return config->state == NULL ? out_of_memory(error) : TALUS_OK;
+    return config->state == NULL ? talus_error_memory(error) : TALUS_OK;
 }
 
 static enum talus_status worker_find(struct config *config, struct talus_error *error)
@@ -148,11 +143,12 @@ static enum talus_status worker_find(struct config *config, struct talus_error *
             *slash = '\0';
         config->worker_program = folder_join(path, "talus-worker");
         if (config->worker_program == NULL)
-            return out_of_memory(error);
+            return talus_error_memory(error);
         if (access(config->worker_program, X_OK) == 0)
             return TALUS_OK;
     }
-    return text_replace(&config->worker_program, "talus-worker") ? TALUS_OK : out_of_memory(error);
+    return text_replace(&config->worker_program, "talus-worker") ? TALUS_OK
+                                                                 : talus_error_memory(error);
 }
 
 /* False without memory. */
@@ -204,7 +200,7 @@ enum talus_status config_read(struct config *config, int argument_count, char **
     if (status == TALUS_OK && file != NULL)
         status = config_file_read(config, file, error);
     if (status == TALUS_OK && !defaults_fill(config))
-        status = out_of_memory(error);
+        status = talus_error_memory(error);
     if (status == TALUS_OK && !config->help && !config->version)
         status = state_find(config, error);
     if (status == TALUS_OK)

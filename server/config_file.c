@@ -34,11 +34,6 @@ static const struct config_key keys[] = {
 };
 enum { KEY_COUNT = sizeof keys / sizeof keys[0] };
 
-static enum talus_status out_of_memory(struct talus_error *error)
-{
-    return talus_error_set(error, TALUS_MEMORY, "memory", "", "out of memory");
-}
-
 static enum talus_status type_error(const struct config_key *key, const char *wanted,
                                     struct talus_error *error)
 {
@@ -65,7 +60,7 @@ static enum talus_status text_read(char **member, const struct config_key *key, 
         return type_error(key, "a string", error);
     if (*member == NULL)
         *member = strdup(json_string_value(value));
-    return *member == NULL ? out_of_memory(error) : TALUS_OK;
+    return *member == NULL ? talus_error_memory(error) : TALUS_OK;
 }
 
 static enum talus_status list_read(char ***member, const struct config_key *key,
@@ -77,14 +72,14 @@ static enum talus_status list_read(char ***member, const struct config_key *key,
     char **texts = calloc(count + 1, sizeof *texts);
     *member = texts;
     if (texts == NULL)
-        return out_of_memory(error);
+        return talus_error_memory(error);
     for (size_t index = 0; index < count; index++) {
         const char *text = json_string_value(json_array_get(value, index));
         if (text == NULL)
             return type_error(key, "an array of strings", error);
         texts[index] = strdup(text);
         if (texts[index] == NULL)
-            return out_of_memory(error);
+            return talus_error_memory(error);
     }
     return TALUS_OK;
 }

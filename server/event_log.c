@@ -105,12 +105,12 @@ enum talus_status event_log_repair(struct store *store, const char *id, const ch
     int64_t highest = 0;
     char *path = folder_join(folder, PROTOCOL_EVENTS_FILE);
     if (path == NULL)
-        return talus_error_set(error, TALUS_MEMORY, "memory", "", "out of memory");
+        return talus_error_memory(error);
     enum talus_status status = event_tail_read(&tail, folder, number_visit, &highest, error);
     if (status == TALUS_OK)
         status = store_transitions(store, id, highest, line_append, &lines, error);
     if (status == TALUS_OK && lines.failed)
-        status = talus_error_set(error, TALUS_MEMORY, "memory", "", "out of memory");
+        status = talus_error_memory(error);
     if (status == TALUS_OK)
         status = lines_write(path, tail.offset, &lines, error);
     event_tail_close(&tail);
@@ -188,7 +188,7 @@ enum talus_status event_tail_read(struct event_tail *tail, const char *folder,
         }
     }
     if (buffer == NULL)
-        status = talus_error_set(error, TALUS_MEMORY, "memory", "", "out of memory");
+        status = talus_error_memory(error);
     free(buffer);
     return status;
 }

@@ -98,7 +98,7 @@ enum talus_status event_stream_open(struct event_stream *stream, const char *fol
     stream->replay_end = tail.offset;
     event_tail_close(&tail);
     if (status == TALUS_OK && (survey.failed || stream->folder == NULL))
-        status = talus_error_set(error, TALUS_MEMORY, "memory", "", "out of memory");
+        status = talus_error_memory(error);
     if (status == TALUS_OK && !survey.on_line)
         status = talus_error_set(error, TALUS_INVALID, "event_id", "",
                                  "no event of this job has the id %" PRId64 "-%" PRIu64,

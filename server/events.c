@@ -197,7 +197,7 @@ enum talus_status events_create(struct events **result, struct service *service,
     struct events *events = calloc(1, sizeof *events);
     *result = events;
     if (events == NULL)
-        return talus_error_set(error, TALUS_MEMORY, "memory", "", "out of memory");
+        return talus_error_memory(error);
     events->service = service;
     (void)pthread_mutex_init(&events->mutex, NULL);
     (void)pthread_cond_init(&events->wake, NULL);

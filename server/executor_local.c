@@ -123,7 +123,7 @@ enum talus_status executor_start(const struct executor_task *task, pid_t *pid,
     char **environment = environment_make(task->lock);
     enum talus_status status = TALUS_OK;
     if (scene == NULL || log == NULL || environment == NULL) {
-        status = talus_error_set(error, TALUS_MEMORY, "memory", "", "out of memory");
+        status = talus_error_memory(error);
     } else {
         int failure = worker_spawn(task, scene, log, environment, pid);
         if (failure != 0)

@@ -53,7 +53,7 @@ enum talus_status feed_create(struct feed **result, struct store *store, struct 
     struct feed *feed = calloc(1, sizeof *feed);
     *result = feed;
     if (feed == NULL)
-        return talus_error_set(error, TALUS_MEMORY, "memory", "", "out of memory");
+        return talus_error_memory(error);
     feed->store = store;
     (void)pthread_mutex_init(&feed->mutex, NULL);
     feed->recent = (struct ring){calloc(RECENT_MAX, sizeof(struct entry)), RECENT_MAX, 0};
@@ -62,7 +62,7 @@ enum talus_status feed_create(struct feed **result, struct store *store, struct 
         return TALUS_OK;
     feed_destroy(feed);
     *result = NULL;
-    return talus_error_set(error, TALUS_MEMORY, "memory", "", "out of memory");
+    return talus_error_memory(error);
 }
 
 void feed_destroy(struct feed *feed)

@@ -27,7 +27,7 @@ enum talus_status file_checksums_create(struct file_checksums **result, struct t
 {
     *result = calloc(1, sizeof **result);
     if (*result == NULL)
-        return talus_error_set(error, TALUS_MEMORY, "memory", "", "out of memory");
+        return talus_error_memory(error);
     (void)pthread_mutex_init(&(*result)->mutex, NULL);
     return TALUS_OK;
 }

@@ -33,7 +33,7 @@ enum talus_status folder_make(const char *path, struct talus_error *error)
 {
     char *copy = strdup(path);
     if (copy == NULL)
-        return talus_error_set(error, TALUS_MEMORY, "memory", "", "out of memory");
+        return talus_error_memory(error);
     enum talus_status status = TALUS_OK;
     for (char *slash = strchr(copy + 1, '/'); status == TALUS_OK; slash = strchr(slash + 1, '/')) {
         if (slash != NULL)
@@ -79,7 +79,7 @@ enum talus_status folder_write(const char *folder, const char *name, const char 
 {
     char *path = folder_join(folder, name);
     if (path == NULL)
-        return talus_error_set(error, TALUS_MEMORY, "memory", "", "out of memory");
+        return talus_error_memory(error);
     int descriptor = open(path, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0640);
     enum talus_status status = descriptor < 0 ? folder_error(error, "make", path)
                                               : write_all(descriptor, data, length, path, error);
@@ -95,10 +95,7 @@ enum talus_status folder_replace(const char *folder, const char *name, const cha
     char *aside_name = NULL, *path = folder_join(folder, name), *aside = NULL;
     if (asprintf(&aside_name, ".%s.tmp", name) >= 0)
         aside = folder_join(folder, aside_name);
-    enum talus_status status =
-        path == NULL || aside == NULL
-            ? talus_error_set(error, TALUS_MEMORY, "memory", "", "out of memory")
-            : TALUS_OK;
+    enum talus_status status = path == NULL || aside == NULL ? talus_error_memory(error) : TALUS_OK;
     if (aside != NULL && status == TALUS_OK && unlink(aside) != 0 && errno != ENOENT)
         status = folder_error(error, "remove", aside);
     if (status == TALUS_OK)

@@ -205,7 +205,7 @@ enum talus_status helper_ask(struct helper *helper, const json_t *question, doub
     *answer = NULL;
     if (line.data == NULL || line.failed) {
         text_release(&line);
-        return talus_error_set(error, TALUS_MEMORY, "memory", "", "out of memory");
+        return talus_error_memory(error);
     }
     enum talus_status status = helper_exchange(helper, &line, deadline, answer, &first);
     /* An old process may have died of something else; a new one that dies too died of this. */

@@ -26,7 +26,7 @@ static enum talus_status columns_copy(struct history_reader *history, const json
     size_t count = json_array_size(columns);
     history->columns = calloc(count, sizeof *history->columns);
     if (history->columns == NULL)
-        return talus_error_set(error, TALUS_MEMORY, "memory", "", "out of memory");
+        return talus_error_memory(error);
     history->column_count = count;
     for (size_t index = 0; index < count; index++) {
         const json_t *column = json_array_get(columns, index);
@@ -35,7 +35,7 @@ static enum talus_status columns_copy(struct history_reader *history, const json
         history->columns[index].name = strdup(name == NULL ? "" : name);
         history->columns[index].unit = strdup(unit == NULL ? "" : unit);
         if (history->columns[index].name == NULL || history->columns[index].unit == NULL)
-            return talus_error_set(error, TALUS_MEMORY, "memory", "", "out of memory");
+            return talus_error_memory(error);
     }
     return TALUS_OK;
 }

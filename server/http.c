@@ -216,7 +216,7 @@ enum talus_status http_start(struct http_server **result, struct service *servic
     *result = server;
     if (server == NULL) {
         (void)close(listener);
-        return talus_error_set(error, TALUS_MEMORY, "memory", "", "out of memory");
+        return talus_error_memory(error);
     }
     enum talus_status status =
         http_watch_create(&server->watch, service->config->request_seconds, error);

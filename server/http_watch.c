@@ -57,7 +57,7 @@ enum talus_status http_watch_create(struct http_watch **result, double seconds,
     struct http_watch *watch = calloc(1, sizeof *watch);
     *result = watch;
     if (watch == NULL)
-        return talus_error_set(error, TALUS_MEMORY, "memory", "", "out of memory");
+        return talus_error_memory(error);
     watch->seconds = seconds;
     (void)pthread_mutex_init(&watch->mutex, NULL);
     (void)pthread_cond_init(&watch->wake, NULL);

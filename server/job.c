@@ -70,7 +70,7 @@ enum talus_status job_text_set(char **text, const char *value, struct talus_erro
 {
     char *copy = value == NULL ? NULL : strdup(value);
     if (value != NULL && copy == NULL)
-        return talus_error_set(error, TALUS_MEMORY, "memory", "", "out of memory");
+        return talus_error_memory(error);
     free(*text);
     *text = copy;
     return TALUS_OK;
@@ -80,7 +80,7 @@ enum talus_status job_json_set(char **text, const json_t *value, struct talus_er
 {
     char *dump = value == NULL ? NULL : json_text(value, 0);
     if (value != NULL && dump == NULL)
-        return talus_error_set(error, TALUS_MEMORY, "memory", "", "out of memory");
+        return talus_error_memory(error);
     free(*text);
     *text = dump;
     return TALUS_OK;

@@ -41,7 +41,7 @@ enum talus_status job_cache_create(struct job_cache **result, struct talus_error
     struct job_cache *cache = calloc(1, sizeof *cache);
     *result = cache;
     if (cache == NULL)
-        return talus_error_set(error, TALUS_MEMORY, "memory", "", "out of memory");
+        return talus_error_memory(error);
     (void)pthread_mutex_init(&cache->mutex, NULL);
     return TALUS_OK;
 }

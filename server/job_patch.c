@@ -137,8 +137,7 @@ static enum talus_status orders_note(struct job *job, const json_t *body, struct
             good = json_object_set_new(steering, looks[index], json_integer(count + 1)) == 0;
     }
     enum talus_status status =
-        good ? job_json_set(&job->steering, steering, error)
-             : talus_error_set(error, TALUS_MEMORY, "memory", "", "out of memory");
+        good ? job_json_set(&job->steering, steering, error) : talus_error_memory(error);
     json_decref(steering);
     job->steered = 1;
     return status;

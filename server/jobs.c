@@ -23,11 +23,6 @@ char *jobs_folder(const struct service *service, const char *id)
     return asprintf(&path, "%s/jobs/%s", service->state, id) < 0 ? NULL : path;
 }
 
-static enum talus_status out_of_memory(struct talus_error *error)
-{
-    return talus_error_set(error, TALUS_MEMORY, "memory", "", "out of memory");
-}
-
 /* Tells everybody who may care that a job is not what it was. */
 static void job_changed(struct service *service, const char *id)
 {
@@ -66,7 +61,7 @@ static enum talus_status folder_fill(const char *folder, const struct job *job, 
     if (text == NULL || line.failed) {
         free(text);
         text_release(&line);
-        return out_of_memory(error);
+        return talus_error_memory(error);
     }
     enum talus_status status = folder_make(folder, error);
     if (status == TALUS_OK)
@@ -83,7 +78,7 @@ static enum talus_status folder_fill(const char *folder, const struct job *job, 
 static enum talus_status jobs_folder_sync(const struct service *service, struct talus_error *error)
 {
     char *path = folder_join(service->state, "jobs");
-    enum talus_status status = path == NULL ? out_of_memory(error) : folder_sync(path, error);
+    enum talus_status status = path == NULL ? talus_error_memory(error) : folder_sync(path, error);
     free(path);
     return status;
 }
@@ -116,7 +111,7 @@ enum talus_status jobs_create(struct service *service, struct job *job, const js
     };
     char *folder = jobs_folder(service, id);
     if (folder == NULL)
-        return out_of_memory(error);
+        return talus_error_memory(error);
     status = folder_fill(folder, job, scene, error);
     if (status == TALUS_OK)
         status = jobs_folder_sync(service, error);
@@ -183,8 +178,8 @@ enum talus_status jobs_orders_write(struct service *service, const char *id,
     char *folder = jobs_folder(service, id);
     /* One at a time, so that the last one to write has the last orders. */
     (void)pthread_mutex_lock(&service->journal);
-    enum talus_status status =
-        folder == NULL ? out_of_memory(error) : store_job_read(service->store, id, &job, error);
+    enum talus_status status = folder == NULL ? talus_error_memory(error)
+                                              : store_job_read(service->store, id, &job, error);
     if (status == TALUS_OK && job.steering != NULL)
         status = folder_replace(folder, PROTOCOL_CONTROL_FILE, job.steering, strlen(job.steering),
                                 error);
@@ -211,7 +206,8 @@ enum talus_status jobs_removal_complete(struct service *service, const char *id,
                                         struct talus_error *error)
 {
     char *folder = jobs_folder(service, id);
-    enum talus_status status = folder == NULL ? out_of_memory(error) : folder_remove(folder, error);
+    enum talus_status status =
+        folder == NULL ? talus_error_memory(error) : folder_remove(folder, error);
     if (status == TALUS_OK)
         status = jobs_folder_sync(service, error);
     if (status == TALUS_OK)

@@ -34,7 +34,7 @@ enum talus_status metrics_create(struct metrics **result, struct talus_error *er
     if (metrics == NULL || metrics->routes == NULL) {
         free(metrics);
         *result = NULL;
-        return talus_error_set(error, TALUS_MEMORY, "memory", "", "out of memory");
+        return talus_error_memory(error);
     }
     (void)pthread_mutex_init(&metrics->mutex, NULL);
     return TALUS_OK;

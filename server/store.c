@@ -32,7 +32,7 @@ sqlite3_stmt *store_prepare(sqlite3 *database, const char *sql, struct talus_err
     struct text marked = {0};
     text_print(&marked, "%s%s", mark, sql);
     if (marked.failed)
-        (void)talus_error_set(error, TALUS_MEMORY, "memory", "", "out of memory");
+        (void)talus_error_memory(error);
     else if (sqlite3_prepare_v3(database, marked.data, -1, SQLITE_PREPARE_PERSISTENT, &statement,
                                 NULL) != SQLITE_OK)
         store_failure(database, error);
@@ -189,7 +189,7 @@ enum talus_status store_open(const char *path, struct store **result, struct tal
 {
     struct store *store = calloc(1, sizeof *store);
     if (store == NULL)
-        return talus_error_set(error, TALUS_MEMORY, "memory", "", "out of memory");
+        return talus_error_memory(error);
     (void)pthread_mutex_init(&store->mutex, NULL);
     (void)pthread_mutex_init(&store->reader_mutex, NULL);
     (void)pthread_cond_init(&store->queued, NULL);

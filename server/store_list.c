@@ -159,7 +159,7 @@ enum talus_status store_job_list(struct store *store, const struct store_filter 
     struct text sql = {0};
     filter_sql(filter, &sql);
     if (sql.failed)
-        return talus_error_set(error, TALUS_MEMORY, "memory", "", "out of memory");
+        return talus_error_memory(error);
     (void)pthread_mutex_lock(&store->reader_mutex);
     enum talus_status status = TALUS_IO;
     sqlite3_stmt *statement = store_prepare(store->reader, sql.data, error);
@@ -172,7 +172,7 @@ enum talus_status store_job_list(struct store *store, const struct store_filter 
         filter_bind_text(statement, ":before", filter->before);
         status = filter_bind_parts(statement, filter->text)
                      ? list_rows(store->reader, statement, visit, context, error)
-                     : talus_error_set(error, TALUS_MEMORY, "memory", "", "out of memory");
+                     : talus_error_memory(error);
         store_release(statement);
     }
     (void)pthread_mutex_unlock(&store->reader_mutex);

@@ -32,7 +32,7 @@ enum talus_status supervisor_create(struct supervisor **result, struct service *
     struct supervisor *supervisor = calloc(1, sizeof *supervisor);
     *result = supervisor;
     if (supervisor == NULL)
-        return talus_error_set(error, TALUS_MEMORY, "memory", "", "out of memory");
+        return talus_error_memory(error);
     supervisor->service = service;
     supervisor->empty_at = UINT64_MAX;
     supervisor->wake = -1;
@@ -111,7 +111,7 @@ enum talus_status supervisor_adopt(struct supervisor *supervisor, const char *id
     if (status == TALUS_OK && job.steering != NULL)
         status = jobs_orders_write(supervisor->service, id, error);
     if (status == TALUS_OK && !supervisor_attempt_add(supervisor, &job, 0))
-        status = talus_error_set(error, TALUS_MEMORY, "memory", "", "out of memory");
+        status = talus_error_memory(error);
     job_release(&job);
     return status;
 }

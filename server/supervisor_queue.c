@@ -89,7 +89,7 @@ static enum talus_status attempt_begin(struct supervisor *supervisor, const char
             (void)fprintf(stderr, "talusd: job %s: %s\n", id, second.text);
     } else if (!supervisor_attempt_add(supervisor, &job, pid)) {
         executor_signal(pid, SIGKILL);
-        status = talus_error_set(error, TALUS_MEMORY, "memory", "", "out of memory");
+        status = talus_error_memory(error);
     }
     job_release(&job);
     return status;

@@ -118,7 +118,7 @@ enum talus_status token_set_parse(struct token_set *set, char *content, struct t
     set->tokens = calloc(line_count, sizeof *set->tokens);
     set->count = 0;
     if (set->tokens == NULL)
-        return talus_error_set(error, TALUS_MEMORY, "memory", "", "out of memory");
+        return talus_error_memory(error);
     for (char *line = content; line != NULL;) {
         char *next = strchr(line, '\n');
         if (next != NULL)
@@ -190,7 +190,7 @@ enum talus_status token_set_read(struct token_set *set, const char *path, bool *
 {
     char *content = malloc(FILE_BYTES_MAX + 2);
     if (content == NULL)
-        return talus_error_set(error, TALUS_MEMORY, "memory", "", "out of memory");
+        return talus_error_memory(error);
     enum talus_status status = file_read(path, content, exposed, error);
     if (status == TALUS_OK)
         status = token_set_parse(set, content, mistakes, error);

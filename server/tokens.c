@@ -46,7 +46,7 @@ enum talus_status tokens_create(struct tokens **result, const char *path, struct
     struct tokens *tokens = calloc(1, sizeof *tokens);
     *result = tokens;
     if (tokens == NULL)
-        return talus_error_set(error, TALUS_MEMORY, "memory", "", "out of memory");
+        return talus_error_memory(error);
     tokens->path = path;
     (void)pthread_rwlock_init(&tokens->lock, NULL);
     enum talus_status status = tokens_reload(tokens, error);

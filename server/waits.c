@@ -21,7 +21,7 @@ enum talus_status waits_create(struct waits **result, struct talus_error *error)
     struct waits *waits = calloc(1, sizeof *waits);
     *result = waits;
     if (waits == NULL)
-        return talus_error_set(error, TALUS_MEMORY, "memory", "", "out of memory");
+        return talus_error_memory(error);
     (void)pthread_mutex_init(&waits->mutex, NULL);
     return TALUS_OK;
 }

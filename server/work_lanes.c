@@ -97,7 +97,7 @@ enum talus_status lanes_create(struct lanes **result, const struct config *confi
     struct lanes *lanes = calloc(1, sizeof *lanes);
     *result = lanes;
     if (lanes == NULL)
-        return talus_error_set(error, TALUS_MEMORY, "memory", "", "out of memory");
+        return talus_error_memory(error);
     (void)pthread_mutex_init(&lanes->mutex, NULL);
     (void)pthread_cond_init(&lanes->queued[0], NULL);
     (void)pthread_cond_init(&lanes->queued[1], NULL);

@@ -31,6 +31,9 @@ __attribute__((format(printf, 5, 6))) enum talus_status
 talus_error_set(struct talus_error *error, enum talus_status status, const char *code,
                 const char *pointer, const char *format, ...);
 
+/* The same for memory that ran out: TALUS_MEMORY, code "memory". */
+enum talus_status talus_error_memory(struct talus_error *error);
+
 /* Short English name of a status: "ok", "invalid", ... (static storage). */
 const char *talus_status_name(enum talus_status status);
 

@@ -81,10 +81,8 @@ static int slice_cut(struct request *request, const char *folder, json_int_t fra
         json_pack("{s:s, s:s, s:I, s:O, s:I, s:s}", "op", "slice", "folder", folder, "frame", frame,
                   "fields", fields, "stride", (json_int_t)request_query_number(request, "stride"),
                   "output", output == NULL ? "" : output);
-    enum talus_status status =
-        output == NULL || question == NULL
-            ? talus_error_set(&error, TALUS_MEMORY, "memory", "", "out of memory")
-            : folder_make(slices, &error);
+    enum talus_status status = output == NULL || question == NULL ? talus_error_memory(&error)
+                                                                  : folder_make(slices, &error);
     if (status == TALUS_OK)
         status = helper_ask(request->helper, question, request->service->config->render_seconds,
                             &answer, &error);

@@ -99,10 +99,9 @@ static bool picture_draw(struct request *request, const char *folder, const char
         json_pack("{s:s, s:s, s:I, s:s, s:i, s:s, s:s}", "op", "render", "folder", folder, "frame",
                   picture->frame, "field", picture->field, "width", picture->width, "style",
                   picture->style, "output", output == NULL ? "" : output);
-    enum talus_status status =
-        output == NULL || path == NULL || question == NULL
-            ? talus_error_set(&error, TALUS_MEMORY, "memory", "", "out of memory")
-            : folder_make(pictures, &error);
+    enum talus_status status = output == NULL || path == NULL || question == NULL
+                                   ? talus_error_memory(&error)
+                                   : folder_make(pictures, &error);
     if (status == TALUS_OK)
         status = helper_ask(request->helper, question, request->service->config->render_seconds,
                             &answer, &error);

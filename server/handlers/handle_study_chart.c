@@ -44,7 +44,7 @@ static json_t *question_make(struct service *service, const struct study *study,
                              study_kind_name((enum study_kind)study->kind), "title", study->name,
                              "units", study_units(service, json_object_get(table, "rows")));
     if (question == NULL && error->status == TALUS_OK)
-        (void)talus_error_set(error, TALUS_MEMORY, "memory", "", "out of memory");
+        (void)talus_error_memory(error);
     json_decref(table);
     text_release(&text);
     return question;

@@ -36,10 +36,9 @@ static bool scene_check(struct request *request, struct submission *submission, 
     struct talus_error error = {0};
     double seconds = request->service->config->helper_seconds;
     json_t *question = scene_question(request->service, scene, submission->job.threads);
-    enum talus_status status =
-        question == NULL
-            ? talus_error_set(&error, TALUS_MEMORY, "memory", "", "out of memory")
-            : helper_ask(request->helper, question, seconds, &submission->answer, &error);
+    enum talus_status status = question == NULL ? talus_error_memory(&error)
+                                                : helper_ask(request->helper, question, seconds,
+                                                             &submission->answer, &error);
     json_decref(question);
     if (status == TALUS_LIMIT) {
         issue_add(submission->errors, "/scene", "too_costly", NULL, NULL, "%s", error.text);

@@ -27,11 +27,6 @@ struct bisection {
     bool failed;      /* no memory */
 };
 
-static enum talus_status out_of_memory(struct talus_error *error)
-{
-    return talus_error_set(error, TALUS_MEMORY, "memory", "", "out of memory");
-}
-
 /* What names a search: the parameters of its rows but the one it varies. */
 static char *search_name(const json_t *parameters, const char *varied)
 {
@@ -58,7 +53,7 @@ static enum talus_status searches_prepare(struct bisection *bisection, struct ta
                json_object_set_new(bisection->places, name, json_integer((json_int_t)index)) == 0;
         free(name);
     }
-    return good && bisection->searches != NULL ? TALUS_OK : out_of_memory(error);
+    return good && bisection->searches != NULL ? TALUS_OK : talus_error_memory(error);
 }
 
 static bool trial_add(struct search *search, struct bisect_trial trial)
@@ -135,7 +130,7 @@ static enum talus_status bisection_read(struct bisection *bisection, const char 
     status = searches_prepare(bisection, error);
     if (status == TALUS_OK)
         status = study_store_rows(service->store, id, &every, trial_note, bisection, error);
-    return status == TALUS_OK && bisection->failed ? out_of_memory(error) : status;
+    return status == TALUS_OK && bisection->failed ? talus_error_memory(error) : status;
 }
 
 static void bisection_release(struct bisection *bisection)
@@ -226,7 +221,8 @@ enum talus_status study_bisection_settle(const struct study *study, struct servi
         status = study_end(service, study->id, STUDY_FAILED, bisection.detail, NULL, error);
     } else if (status == TALUS_OK) {
         steps = calloc(bisection.search_count + 1, sizeof *steps);
-        status = steps == NULL ? out_of_memory(error) : searches_step(&bisection, steps, error);
+        status =
+            steps == NULL ? talus_error_memory(error) : searches_step(&bisection, steps, error);
     }
     free(steps);
     bisection_release(&bisection);

@@ -142,9 +142,9 @@ static enum talus_status batch_check(struct check *check, struct talus_error *er
     size_t left = json_array_size(check->draft->rows) - check->next;
     size_t count = left < check->batch ? left : check->batch;
     json_t *answer = NULL, *question = question_make(check, count);
-    enum talus_status status =
-        question == NULL ? talus_error_set(error, TALUS_MEMORY, "memory", "", "out of memory")
-                         : helper_ask(check->helper, question, seconds, &answer, error);
+    enum talus_status status = question == NULL
+                                   ? talus_error_memory(error)
+                                   : helper_ask(check->helper, question, seconds, &answer, error);
     json_decref(question);
     if (status == TALUS_OK) {
         const json_t *answers = json_object_get(answer, "answers");
@@ -210,7 +210,7 @@ static enum talus_status first_check(struct check *check, struct talus_error *er
     json_t *question = scene == NULL ? NULL : scene_question(check->service, scene, 1);
     json_decref(scene);
     enum talus_status status =
-        question == NULL ? talus_error_set(error, TALUS_MEMORY, "memory", "", "out of memory")
+        question == NULL ? talus_error_memory(error)
                          : helper_ask(check->helper, question,
                                       check->service->config->helper_seconds, &answer, error);
     json_decref(question);

@@ -40,7 +40,7 @@ enum talus_status study_driver_create(struct study_driver **result, struct servi
     struct study_driver *driver = calloc(1, sizeof *driver);
     *result = driver;
     if (driver == NULL)
-        return talus_error_set(error, TALUS_MEMORY, "memory", "", "out of memory");
+        return talus_error_memory(error);
     driver->service = service;
     helper_init(&driver->helper, service->config);
     enum talus_status status = wakeup_create(&driver->wake, error);

@@ -83,7 +83,7 @@ enum talus_status study_rows_append(sqlite3 *database, const char *study, int64_
         (void)sqlite3_bind_int64(statement, 2, count + (int64_t)index);
         (void)sqlite3_bind_int(statement, 3, ROW_WAITING);
         if (!member_bind(statement, 4, row, "parameters") || !member_bind(statement, 5, row, "set"))
-            status = talus_error_set(error, TALUS_MEMORY, "memory", "", "out of memory");
+            status = talus_error_memory(error);
         else if (sqlite3_step(statement) != SQLITE_DONE)
             status = store_failure(database, error);
         store_release(statement);
@@ -186,8 +186,7 @@ static enum talus_status study_run_text(sqlite3 *database, struct text *sql, con
                                         struct talus_error *error)
 {
     enum talus_status status =
-        sql->failed ? talus_error_set(error, TALUS_MEMORY, "memory", "", "out of memory")
-                    : store_run_for(database, sql->data, study, error);
+        sql->failed ? talus_error_memory(error) : store_run_for(database, sql->data, study, error);
     text_release(sql);
     return status;
 }

@@ -21,7 +21,7 @@ static enum talus_status study_find(sqlite3 *database, const char *id, bool whol
     struct text sql = {0};
     text_print(&sql, "%s WHERE id = ?", whole ? study_select_whole : study_select_light);
     if (sql.failed)
-        return talus_error_set(error, TALUS_MEMORY, "memory", "", "out of memory");
+        return talus_error_memory(error);
     sqlite3_stmt *statement = store_prepare(database, sql.data, error);
     text_release(&sql);
     if (statement == NULL)

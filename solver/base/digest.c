@@ -34,9 +34,9 @@ enum talus_status digest_file(const char *path, char hexadecimal[65], struct tal
         return talus_error_set(error, TALUS_IO, "open", "", "cannot open %s: %s", path,
                                strerror(errno));
     EVP_MD_CTX *context = EVP_MD_CTX_new();
-    enum talus_status status =
-        context == NULL ? talus_error_set(error, TALUS_MEMORY, "memory", "", "out of memory")
-                        : digest_stream(stream, context, path, hexadecimal, error);
+    enum talus_status status = context == NULL
+                                   ? talus_error_memory(error)
+                                   : digest_stream(stream, context, path, hexadecimal, error);
     EVP_MD_CTX_free(context);
     (void)fclose(stream);
     return status;

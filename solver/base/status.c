@@ -19,6 +19,11 @@ enum talus_status talus_error_set(struct talus_error *error, enum talus_status s
     return status;
 }
 
+enum talus_status talus_error_memory(struct talus_error *error)
+{
+    return talus_error_set(error, TALUS_MEMORY, "memory", "", "out of memory");
+}
+
 const char *talus_status_name(enum talus_status status)
 {
     static const char *const names[] = {

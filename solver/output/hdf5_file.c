@@ -247,7 +247,7 @@ static enum talus_status read_text_dataset(hid_t dataset, const char *name, char
     if (H5Tget_class(type) != H5T_STRING || H5Tis_variable_str(type) != 0)
         status = talus_error_set(error, TALUS_IO, "hdf5", "", "%s is not a text", name);
     else if ((buffer = calloc(H5Tget_size(type) + 1, 1)) == NULL)
-        status = talus_error_set(error, TALUS_MEMORY, "memory", "", "out of memory");
+        status = talus_error_memory(error);
     else if (H5Dread(dataset, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, buffer) < 0)
         status = hdf5_error(error, "read text", name);
     (void)H5Tclose(type);

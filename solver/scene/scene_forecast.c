@@ -147,6 +147,6 @@ json_t *scene_forecast(const struct talus_scene *scene, int threads, const json_
         add_intervals(forecast, &estimate, &output, memory) == 0)
         return forecast;
     json_decref(forecast);
-    (void)talus_error_set(error, TALUS_MEMORY, "memory", "", "out of memory");
+    (void)talus_error_memory(error);
     return NULL;
 }

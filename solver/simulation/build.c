@@ -139,7 +139,7 @@ static enum talus_status build_materials(struct run *run, struct talus_error *er
     run->materials = calloc(count + 1, sizeof *run->materials);
     run->body_material = calloc(run->scene.body_count + 1, sizeof *run->body_material);
     if (run->materials == NULL || run->body_material == NULL)
-        return talus_error_set(error, TALUS_MEMORY, "memory", "", "out of memory");
+        return talus_error_memory(error);
     run->reference_density = INFINITY;
     for (size_t index = 0; index < count; index++) {
         struct run_material *material = &run->materials[index];
@@ -148,7 +148,7 @@ static enum talus_status build_materials(struct run *run, struct talus_error *er
         material->model = model_of(&run->scene, index);
         material->constants = calloc(1, material->model->constants_size + 1);
         if (material->constants == NULL)
-            return talus_error_set(error, TALUS_MEMORY, "memory", "", "out of memory");
+            return talus_error_memory(error);
         material->model->prepare(values, material->constants);
         material->density = values[MATERIAL_VALUE_DENSITY];
         material->wave_speed = material->model->wave_speed(material->constants);
@@ -177,7 +177,7 @@ static enum talus_status build_materials(struct run *run, struct talus_error *er
 static enum talus_status build_walls(struct run *run, struct talus_error *error)
 {
     if (wall_set_create(&run->walls, &run->scene, &run->grid.domain) != 0)
-        return talus_error_set(error, TALUS_MEMORY, "memory", "", "out of memory");
+        return talus_error_memory(error);
     const size_t windows = run->walls.face_count + run->scene.boundary_count;
     run->faces = calloc(run->walls.face_count + 1, sizeof *run->faces);
     run->boundaries = calloc(run->scene.boundary_count + 1, sizeof *run->boundaries);
@@ -185,7 +185,7 @@ static enum talus_status build_walls(struct run *run, struct talus_error *error)
     run->scratch = calloc((size_t)run->thread_capacity, sizeof *run->scratch);
     if (run->faces == NULL || run->boundaries == NULL || run->windows == NULL ||
         run->scratch == NULL)
-        return talus_error_set(error, TALUS_MEMORY, "memory", "", "out of memory");
+        return talus_error_memory(error);
     return TALUS_OK;
 }
 
@@ -253,7 +253,7 @@ static enum talus_status build_windows(struct run *run, struct talus_error *erro
         run->windows[index].capacity = (size_t)fmin(1e6, ceil(length / step)) + 4;
         run->windows[index].entries = calloc(4 * run->windows[index].capacity, sizeof(double));
         if (run->windows[index].entries == NULL)
-            return talus_error_set(error, TALUS_MEMORY, "memory", "", "out of memory");
+            return talus_error_memory(error);
     }
     return TALUS_OK;
 }
@@ -272,9 +272,9 @@ enum talus_status run_build(struct run *run, const struct talus_scene *scene,
 {
     memset(run, 0, sizeof *run);
     if (scene_copy(scene, &run->scene) != 0)
-        return talus_error_set(error, TALUS_MEMORY, "memory", "", "out of memory");
+        return talus_error_memory(error);
     if (scene->dimension == TALUS_AXISYMMETRIC && scene_add_axis(&run->scene) != 0)
-        return talus_error_set(error, TALUS_MEMORY, "memory", "", "out of memory");
+        return talus_error_memory(error);
     if (scene->material_count > 64)
         return talus_error_set(error, TALUS_INVALID, "length", "/materials",
                                "%zu materials; at most 64 are possible", scene->material_count);

@@ -179,7 +179,7 @@ static enum talus_status prepare(struct talus_simulation *simulation, struct tal
     run->outbox = malloc((run->initial_particle_count + 1) * sizeof *run->outbox);
     if (run->outbox == NULL || probes_reserve(simulation) != 0 ||
         simulation_make_columns(simulation) != 0)
-        return talus_error_set(error, TALUS_MEMORY, "memory", "", "out of memory");
+        return talus_error_memory(error);
     return TALUS_OK;
 }
 
@@ -201,7 +201,7 @@ enum talus_status simulation_begin(const struct talus_scene *scene,
     struct talus_simulation *created = calloc(1, sizeof *created);
     *simulation = created;
     if (created == NULL)
-        return talus_error_set(error, TALUS_MEMORY, "memory", "", "out of memory");
+        return talus_error_memory(error);
     thread_choice_init(&created->choice);
     created->all_threads = options->all_threads;
     enum talus_status status = check_precision(scene, error);

@@ -106,7 +106,7 @@ static enum talus_status enter_folder(struct job_run *run, struct talus_error *e
     if (status == TALUS_OK)
         status = event_open(&run->events, options->folder, error);
     if (status == TALUS_OK && (run->writer = writer_create()) == NULL)
-        status = talus_error_set(error, TALUS_MEMORY, "memory", "", "out of memory");
+        status = talus_error_memory(error);
     if (status != TALUS_OK)
         return status;
     run->events.attempt = options->attempt > 0 ? options->attempt

@@ -51,7 +51,7 @@ enum talus_status precision_switch(enum talus_precision wanted, char *const *arg
         count++;
     char **all = calloc(count + 2, sizeof *all);
     if (all == NULL)
-        return talus_error_set(error, TALUS_MEMORY, "memory", "", "out of memory");
+        return talus_error_memory(error);
     other_program(wanted, program);
     all[0] = program;
     memcpy(all + 1, arguments, count * sizeof *all);
