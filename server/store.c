@@ -58,6 +58,22 @@ enum talus_status store_finish(sqlite3 *database, sqlite3_stmt *statement,
     return status;
 }
 
+enum talus_status store_visit(sqlite3 *database, sqlite3_stmt *statement,
+                              bool (*visit)(sqlite3_stmt *statement, void *context), void *context,
+                              struct talus_error *error)
+{
+    if (statement == NULL)
+        return TALUS_IO;
+    int step = SQLITE_DONE;
+    bool more = true;
+    while (more && (step = sqlite3_step(statement)) == SQLITE_ROW)
+        more = visit(statement, context);
+    enum talus_status status =
+        step == SQLITE_ROW || step == SQLITE_DONE ? TALUS_OK : store_failure(database, error);
+    store_release(statement);
+    return status;
+}
+
 char *store_column_copy(sqlite3_stmt *statement, int column)
 {
     const char *value = (const char *)sqlite3_column_text(statement, column);

@@ -10,9 +10,15 @@ static const char changes_sql[] =
     "SELECT row, 1, study, at, state, 0, NULL, detail FROM study_transitions"
     " WHERE row > ?1 AND number = -1 ORDER BY row LIMIT ?2) ORDER BY 1 LIMIT ?2";
 
-static struct store_change change_of(sqlite3_stmt *statement)
+struct change_visitor {
+    bool (*visit)(const struct store_change *change, void *context);
+    void *context;
+};
+
+static bool change_visit(sqlite3_stmt *statement, void *context)
 {
-    return (struct store_change){
+    const struct change_visitor *visitor = context;
+    const struct store_change change = {
         .row = sqlite3_column_int64(statement, 0),
         .study = sqlite3_column_int(statement, 1) != 0,
         .id = (const char *)sqlite3_column_text(statement, 2),
@@ -22,28 +28,21 @@ static struct store_change change_of(sqlite3_stmt *statement)
         .reason = (const char *)sqlite3_column_text(statement, 6),
         .detail = (const char *)sqlite3_column_text(statement, 7),
     };
+    return visitor->visit(&change, visitor->context);
 }
 
 enum talus_status store_changes(struct store *store, int64_t after, int64_t limit,
                                 bool (*visit)(const struct store_change *change, void *context),
                                 void *context, struct talus_error *error)
 {
-    enum talus_status status = TALUS_IO;
+    struct change_visitor visitor = {.visit = visit, .context = context};
     (void)pthread_mutex_lock(&store->reader_mutex);
     sqlite3_stmt *statement = store_prepare(store->reader, changes_sql, error);
     if (statement != NULL) {
-        int step = SQLITE_ROW;
-        bool more = true;
         (void)sqlite3_bind_int64(statement, 1, after);
         (void)sqlite3_bind_int64(statement, 2, limit);
-        while (more && (step = sqlite3_step(statement)) == SQLITE_ROW) {
-            const struct store_change change = change_of(statement);
-            more = visit(&change, context);
-        }
-        status = step == SQLITE_ROW || step == SQLITE_DONE ? TALUS_OK
-                                                           : store_failure(store->reader, error);
-        (void)sqlite3_finalize(statement);
     }
+    enum talus_status status = store_visit(store->reader, statement, change_visit, &visitor, error);
     (void)pthread_mutex_unlock(&store->reader_mutex);
     return status;
 }
@@ -61,7 +60,7 @@ enum talus_status store_changes_last(struct store *store, int64_t *row, struct t
             sqlite3_step(statement) == SQLITE_ROW ? TALUS_OK : store_failure(store->reader, error);
         if (status == TALUS_OK)
             *row = sqlite3_column_int64(statement, 0);
-        (void)sqlite3_finalize(statement);
+        store_release(statement);
     }
     (void)pthread_mutex_unlock(&store->reader_mutex);
     return status;

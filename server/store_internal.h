@@ -56,6 +56,12 @@ void store_release(sqlite3_stmt *statement);
 /* Steps a statement that returns no rows, then releases it (NULL fails). */
 TALUS_MUST_CHECK enum talus_status store_finish(sqlite3 *database, sqlite3_stmt *statement,
                                                 struct talus_error *error);
+/* Steps through what a statement yields, until `visit` has enough, then releases it (NULL fails).
+ */
+TALUS_MUST_CHECK enum talus_status store_visit(sqlite3 *database, sqlite3_stmt *statement,
+                                               bool (*visit)(sqlite3_stmt *statement,
+                                                             void *context),
+                                               void *context, struct talus_error *error);
 /* A copy of a text in a row (free() it), NULL for NULL. */
 char *store_column_copy(sqlite3_stmt *statement, int column);
 /* Runs a statement that returns nothing and has one parameter. */

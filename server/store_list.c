@@ -253,7 +253,7 @@ enum talus_status store_job_find_finished(struct store *store, const char *scene
             (void)snprintf(found, 64, "%s", (const char *)sqlite3_column_text(statement, 0));
         status = step == SQLITE_ROW || step == SQLITE_DONE ? TALUS_OK
                                                            : store_failure(store->reader, error);
-        (void)sqlite3_finalize(statement);
+        store_release(statement);
     }
     (void)pthread_mutex_unlock(&store->reader_mutex);
     return status;

@@ -6,23 +6,6 @@
 
 #include <string.h>
 
-/* Visits what a statement yields, under the reader's lock; releases it. NULL fails. */
-static enum talus_status statement_visit(sqlite3 *database, sqlite3_stmt *statement,
-                                         bool (*visit)(sqlite3_stmt *statement, void *context),
-                                         void *context, struct talus_error *error)
-{
-    if (statement == NULL)
-        return TALUS_IO;
-    int step = SQLITE_DONE;
-    bool more = true;
-    while (more && (step = sqlite3_step(statement)) == SQLITE_ROW)
-        more = visit(statement, context);
-    enum talus_status status =
-        step == SQLITE_ROW || step == SQLITE_DONE ? TALUS_OK : store_failure(database, error);
-    store_release(statement);
-    return status;
-}
-
 struct study_visitor {
     bool (*visit)(const struct study *study, void *context);
     void *context;
@@ -48,8 +31,10 @@ enum talus_status study_store_list(struct store *store, const struct study_filte
                "%s WHERE deleting = ?1 AND (?2 < 0 OR state = ?2) AND (?3 IS NULL OR id < ?3)"
                " ORDER BY id DESC LIMIT ?4",
                study_select_light);
+    if (sql.failed)
+        return talus_error_memory(error);
     (void)pthread_mutex_lock(&store->reader_mutex);
-    sqlite3_stmt *statement = sql.failed ? NULL : store_prepare(store->reader, sql.data, error);
+    sqlite3_stmt *statement = store_prepare(store->reader, sql.data, error);
     if (statement != NULL) {
         int state = filter->state == STUDY_STATE_COUNT ? -1 : (int)filter->state;
         (void)sqlite3_bind_int(statement, 1, (int)filter->deleting);
@@ -57,8 +42,7 @@ enum talus_status study_store_list(struct store *store, const struct study_filte
         (void)sqlite3_bind_text(statement, 3, filter->before, -1, SQLITE_STATIC);
         (void)sqlite3_bind_int64(statement, 4, filter->limit > 0 ? filter->limit : -1);
     }
-    enum talus_status status =
-        statement_visit(store->reader, statement, study_visit, &visitor, error);
+    enum talus_status status = store_visit(store->reader, statement, study_visit, &visitor, error);
     (void)pthread_mutex_unlock(&store->reader_mutex);
     text_release(&sql);
     return status;
@@ -101,8 +85,10 @@ enum talus_status study_store_rows(struct store *store, const char *id,
     struct text sql = {0};
     text_print(&sql, "%s%s AND number >= ?3 ORDER BY number LIMIT ?4", columns,
                filter->state == ROW_STATE_COUNT ? "" : " AND state = ?2");
+    if (sql.failed)
+        return talus_error_memory(error);
     (void)pthread_mutex_lock(&store->reader_mutex);
-    sqlite3_stmt *statement = sql.failed ? NULL : store_prepare(store->reader, sql.data, error);
+    sqlite3_stmt *statement = store_prepare(store->reader, sql.data, error);
     if (statement != NULL) {
         (void)sqlite3_bind_text(statement, 1, id, -1, SQLITE_STATIC);
         if (filter->state != ROW_STATE_COUNT)
@@ -110,8 +96,7 @@ enum talus_status study_store_rows(struct store *store, const char *id,
         (void)sqlite3_bind_int64(statement, 3, filter->from);
         (void)sqlite3_bind_int64(statement, 4, filter->limit > 0 ? filter->limit : -1);
     }
-    enum talus_status status =
-        statement_visit(store->reader, statement, row_visit, &visitor, error);
+    enum talus_status status = store_visit(store->reader, statement, row_visit, &visitor, error);
     (void)pthread_mutex_unlock(&store->reader_mutex);
     text_release(&sql);
     return status;
@@ -151,7 +136,7 @@ enum talus_status study_store_transitions(struct store *store, const char *id, i
         (void)sqlite3_bind_int64(statement, 2, after);
     }
     enum talus_status status =
-        statement_visit(store->reader, statement, transition_visit, &visitor, error);
+        store_visit(store->reader, statement, transition_visit, &visitor, error);
     (void)pthread_mutex_unlock(&store->reader_mutex);
     return status;
 }
@@ -183,7 +168,7 @@ enum talus_status study_store_changes(struct store *store, int64_t *after,
     if (statement != NULL)
         (void)sqlite3_bind_int64(statement, 1, *after);
     enum talus_status status =
-        statement_visit(store->reader, statement, changes_visit, &visitor, error);
+        store_visit(store->reader, statement, changes_visit, &visitor, error);
     (void)pthread_mutex_unlock(&store->reader_mutex);
     *after = visitor.after;
     return status;
@@ -204,7 +189,7 @@ enum talus_status study_store_jobs(struct store *store, const char *id, json_t *
         store_prepare(store->reader, "SELECT id FROM jobs WHERE study = ?1", error);
     if (statement != NULL)
         (void)sqlite3_bind_text(statement, 1, id, -1, SQLITE_STATIC);
-    enum talus_status status = statement_visit(store->reader, statement, job_visit, *ids, error);
+    enum talus_status status = store_visit(store->reader, statement, job_visit, *ids, error);
     (void)pthread_mutex_unlock(&store->reader_mutex);
     return status;
 }
