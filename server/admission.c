@@ -1,13 +1,13 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 #include "admission.h"
 
+#include "folder.h"
 #include "json_text.h"
 #include "service.h"
 
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
-#include <sys/statvfs.h>
 
 enum { KEY_BYTES_MAX = 255 };
 
@@ -68,12 +68,9 @@ void admission_made(struct request *request, const char *path, const char *id, b
 
 bool admission_disk(struct request *request, double bytes)
 {
-    struct statvfs disk;
-    if (statvfs(request->service->state, &disk) != 0)
-        return true;
-    double left = (double)disk.f_bavail * (double)disk.f_frsize -
-                  request->service->config->disk_reserve_bytes;
-    if (bytes <= left)
+    const double free_bytes = folder_free_bytes(request->service->state);
+    double left = free_bytes - request->service->config->disk_reserve_bytes;
+    if (free_bytes < 0 || bytes <= left)
         return true;
     left = left < 0 ? 0 : left;
     json_t *numbers = json_pack("{s:o, s:o}", "needed_bytes", json_number_make(ceil(bytes)),

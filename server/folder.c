@@ -12,6 +12,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
+#include <sys/statvfs.h>
 #include <sys/syscall.h>
 #include <time.h>
 #include <unistd.h>
@@ -209,6 +210,12 @@ void folder_list(const char *folder, bool (*visit)(const char *name, void *conte
     if (walk != NULL)
         (void)fts_close(walk);
     free(root);
+}
+
+double folder_free_bytes(const char *path)
+{
+    struct statvfs disk;
+    return statvfs(path, &disk) == 0 ? (double)disk.f_bavail * (double)disk.f_frsize : -1;
 }
 
 int64_t folder_size(const char *path)

@@ -27,6 +27,8 @@ TALUS_MUST_CHECK enum talus_status folder_sync(const char *path, struct talus_er
 TALUS_MUST_CHECK enum talus_status folder_remove(const char *path, struct talus_error *error);
 /* Bytes of all files under a folder (their lengths); 0 if it is not there. */
 int64_t folder_size(const char *path);
+/* Bytes that are free where a folder is; negative if the system does not say. */
+double folder_free_bytes(const char *path);
 /* "a/b" -> new string, NULL without memory. */
 char *folder_join(const char *folder, const char *name);
 /* Whether `name` may be read by a client: relative, no empty, hidden or unfinished component

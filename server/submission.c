@@ -87,6 +87,13 @@ void submission_settings_read(const json_t *body, struct job *job, json_t *error
     json_fields_read(settings_fields, body, "", job, errors);
 }
 
+void submission_threads_check(const json_t *body, int64_t threads, int64_t workers, json_t *errors)
+{
+    if (threads > workers)
+        issue_add(errors, "/threads", "capacity", json_object_get(body, "threads"), NULL,
+                  "this service runs %lld threads at once", (long long)workers);
+}
+
 void submission_read(const json_t *body, int64_t workers, struct job *job, const json_t **scene,
                      json_t *errors)
 {
@@ -96,9 +103,7 @@ void submission_read(const json_t *body, int64_t workers, struct job *job, const
         return;
     }
     json_fields_read(submission_fields, body, "", job, errors);
-    if (job->threads > workers)
-        issue_add(errors, "/threads", "capacity", json_object_get(body, "threads"), NULL,
-                  "this service runs %lld threads at once", (long long)workers);
+    submission_threads_check(body, job->threads, workers, errors);
 }
 
 bool submission_reuse(const json_t *body)

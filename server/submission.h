@@ -16,6 +16,8 @@ void submission_read(const json_t *body, int64_t workers, struct job *job, const
 /* The part of it that may change later, labels, limits and priority, into a job whose own are
  * replaced. */
 void submission_settings_read(const json_t *settings, struct job *job, json_t *errors);
+/* Adds a mistake if a body asks for more threads than can run. */
+void submission_threads_check(const json_t *body, int64_t threads, int64_t workers, json_t *errors);
 /* Whether a body asks for `reuse`. */
 bool submission_reuse(const json_t *body);
 

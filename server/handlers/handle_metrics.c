@@ -4,6 +4,7 @@
 #include "audit.h"
 #include "calibration.h"
 #include "events.h"
+#include "folder.h"
 #include "moment.h"
 #include "request.h"
 #include "service.h"
@@ -15,7 +16,6 @@
 #include <inttypes.h>
 #include <string.h>
 #include <sys/resource.h>
-#include <sys/statvfs.h>
 
 static void number_print(struct text *text, const char *name, const char *type, double value,
                          const char *help)
@@ -49,7 +49,7 @@ static double cpu_seconds(int who)
 
 static void service_print(struct text *text, struct service *service)
 {
-    struct statvfs disk;
+    const double free_bytes = folder_free_bytes(service->state);
     number_print(text, "talus_threads", "gauge", service->config->workers,
                  "Threads that may run at once over all jobs.");
     number_print(text, "talus_threads_busy", "gauge",
@@ -63,9 +63,8 @@ static void service_print(struct text *text, struct service *service)
                  (double)store_commit_count(service->store), "Commits of the database.");
     number_print(text, "talus_store_healthy", "gauge", store_healthy(service->store),
                  "Whether the database takes writes.");
-    if (statvfs(service->state, &disk) == 0)
-        number_print(text, "talus_disk_free_bytes", "gauge",
-                     (double)disk.f_bavail * (double)disk.f_frsize,
+    if (free_bytes >= 0)
+        number_print(text, "talus_disk_free_bytes", "gauge", free_bytes,
                      "Free space where the state is.");
     number_print(text, "talus_worker_cpu_seconds_total", "counter", cpu_seconds(RUSAGE_CHILDREN),
                  "Processor time of workers and helpers that have ended.");

@@ -4,14 +4,13 @@
 #include "audit.h"
 #include "calibration.h"
 #include "conditional.h"
+#include "folder.h"
 #include "helper.h"
 #include "openapi.h"
 #include "request.h"
 #include "schemas.h"
 #include "service.h"
 #include "talus/version.h"
-
-#include <sys/statvfs.h>
 
 const struct operation operation_version = {
     .summary = "Version and build of the daemon",
@@ -75,14 +74,12 @@ static json_t *warnings_json(struct service *service)
 enum handled handle_readyz(struct request *request)
 {
     struct service *service = request->service;
-    struct statvfs disk;
     const char *reason = NULL;
     if (atomic_load(&service->draining))
         reason = "the daemon is stopping";
     else if (!store_healthy(service->store))
         reason = "the store does not take writes";
-    else if (statvfs(service->state, &disk) != 0 ||
-             (double)disk.f_bavail * (double)disk.f_frsize < service->config->disk_reserve_bytes)
+    else if (folder_free_bytes(service->state) < service->config->disk_reserve_bytes)
         reason = "the disk is nearly full";
     if (reason == NULL)
         reply_json(&request->reply, MHD_HTTP_OK,

@@ -36,9 +36,7 @@ static void shared_read(const json_t *body, int64_t workers, struct study_draft 
 {
     struct job job = {0};
     json_fields_read(schema_study_submission.fields, body, "", &job, errors);
-    if (job.threads > workers)
-        issue_add(errors, "/threads", "capacity", json_object_get(body, "threads"), NULL,
-                  "this service runs %lld threads at once", (long long)workers);
+    submission_threads_check(body, job.threads, workers, errors);
     if (job.name != NULL && job.name[0] == '\0')
         issue_add(errors, "/name", "length", NULL, NULL, "a name is wanted");
     draft->threads = job.threads;

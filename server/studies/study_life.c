@@ -69,6 +69,20 @@ static enum talus_status revision_check(const struct study *study, int64_t revis
                            (long long)study->revision);
 }
 
+/* Changes a study and tells those who may care; *result (or NULL) gets it as it is then. */
+static enum talus_status
+study_alter(struct service *service, const char *id,
+            enum talus_status (*apply)(struct study *study, struct study_change *change,
+                                       struct talus_error *error),
+            struct guarded guarded, struct study *result, struct talus_error *error)
+{
+    struct study_change change = {.apply = apply, .context = &guarded};
+    enum talus_status status = study_store_change(service->store, id, &change, result, error);
+    if (status == TALUS_OK)
+        study_changed(service, id);
+    return status;
+}
+
 static enum talus_status cancel_apply(struct study *study, struct study_change *change,
                                       struct talus_error *error)
 {
@@ -86,13 +100,10 @@ static enum talus_status cancel_apply(struct study *study, struct study_change *
 enum talus_status study_cancel(struct service *service, const char *id, int64_t revision,
                                struct study *result, struct talus_error *error)
 {
-    struct guarded guarded = {.revision = revision};
-    struct study_change change = {.apply = cancel_apply, .context = &guarded};
-    enum talus_status status = study_store_change(service->store, id, &change, result, error);
-    if (status == TALUS_OK) {
-        study_changed(service, id);
+    const struct guarded guarded = {.revision = revision};
+    enum talus_status status = study_alter(service, id, cancel_apply, guarded, result, error);
+    if (status == TALUS_OK)
         study_driver_wish(service->studies);
-    }
     return status;
 }
 
@@ -131,13 +142,9 @@ enum talus_status study_removal_complete(struct service *service, const char *id
 enum talus_status study_delete(struct service *service, const char *id, int64_t revision,
                                struct talus_error *error)
 {
-    struct guarded guarded = {.revision = revision};
-    struct study_change change = {.apply = delete_apply, .context = &guarded};
-    enum talus_status status = study_store_change(service->store, id, &change, NULL, error);
-    if (status != TALUS_OK)
-        return status;
-    study_changed(service, id);
-    return study_removal_complete(service, id, error);
+    const struct guarded guarded = {.revision = revision};
+    enum talus_status status = study_alter(service, id, delete_apply, guarded, NULL, error);
+    return status == TALUS_OK ? study_removal_complete(service, id, error) : status;
 }
 
 static enum talus_status end_apply(struct study *study, struct study_change *change,
@@ -158,12 +165,8 @@ static enum talus_status end_apply(struct study *study, struct study_change *cha
 enum talus_status study_end(struct service *service, const char *id, enum study_state state,
                             const char *detail, const char *result, struct talus_error *error)
 {
-    struct guarded guarded = {.state = state, .detail = detail, .result = result};
-    struct study_change change = {.apply = end_apply, .context = &guarded};
-    enum talus_status status = study_store_change(service->store, id, &change, NULL, error);
-    if (status == TALUS_OK)
-        study_changed(service, id);
-    return status;
+    const struct guarded guarded = {.state = state, .detail = detail, .result = result};
+    return study_alter(service, id, end_apply, guarded, NULL, error);
 }
 
 static enum talus_status extend_apply(struct study *study, struct study_change *change,
@@ -179,10 +182,6 @@ static enum talus_status extend_apply(struct study *study, struct study_change *
 enum talus_status study_extend(struct service *service, const char *id, json_t *rows,
                                struct talus_error *error)
 {
-    struct guarded guarded = {.rows = rows};
-    struct study_change change = {.apply = extend_apply, .context = &guarded};
-    enum talus_status status = study_store_change(service->store, id, &change, NULL, error);
-    if (status == TALUS_OK)
-        study_changed(service, id);
-    return status;
+    const struct guarded guarded = {.rows = rows};
+    return study_alter(service, id, extend_apply, guarded, NULL, error);
 }

@@ -102,6 +102,18 @@ enum talus_status study_store_rows(struct store *store, const char *id,
     return status;
 }
 
+static bool row_job_note(const struct study_row *row, void *context)
+{
+    return row->job == NULL || json_array_append_new(context, json_string(row->job)) == 0;
+}
+
+enum talus_status study_store_row_jobs(struct store *store, const char *id, enum row_state state,
+                                       json_t *ids, struct talus_error *error)
+{
+    const struct row_filter filter = {.state = state};
+    return study_store_rows(store, id, &filter, row_job_note, ids, error);
+}
+
 struct transition_visitor {
     bool (*visit)(const struct study_transition *transition, void *context);
     void *context;

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* A row that waits becomes a job, shows one that is there, or fails. */
+#include "folder.h"
 #include "jobs.h"
 #include "scene_question.h"
 #include "studies/study_run.h"
@@ -9,7 +10,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/statvfs.h>
 
 /* So often may a helper die over a row before the row is to blame. */
 enum { HELPER_FAILURES_MAX = 3 };
@@ -106,13 +106,10 @@ static enum row_start row_reuse(const struct row_task *task, bool *found)
 
 static bool disk_fits(const struct row_task *task)
 {
-    struct statvfs disk;
+    const double free_bytes = folder_free_bytes(task->service->state);
     const json_t *forecast = json_object_get(task->answer, "forecast");
     double bytes = json_number_value(json_object_get(forecast, "disk_bytes"));
-    if (statvfs(task->service->state, &disk) != 0)
-        return true;
-    return bytes <= (double)disk.f_bavail * (double)disk.f_frsize -
-                        task->service->config->disk_reserve_bytes;
+    return free_bytes < 0 || bytes <= free_bytes - task->service->config->disk_reserve_bytes;
 }
 
 static enum talus_status job_fill(const struct row_task *task, struct job *job,

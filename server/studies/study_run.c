@@ -34,11 +34,6 @@ enum talus_status study_run_settle(struct study_run *run, struct service *servic
     return study_end(service, study->id, STUDY_FINISHED, NULL, NULL, error);
 }
 
-static bool job_note(const struct study_row *row, void *context)
-{
-    return row->job == NULL || json_array_append_new(context, json_string(row->job)) == 0;
-}
-
 enum talus_status study_run_stop(struct study_run *run, struct service *service,
                                  struct talus_error *error)
 {
@@ -49,10 +44,8 @@ enum talus_status study_run_stop(struct study_run *run, struct service *service,
     if (run->stopped)
         return TALUS_OK;
     json_t *jobs = json_array();
-    for (size_t state = 0; state < 2 && status == TALUS_OK; state++) {
-        const struct row_filter filter = {.state = active[state]};
-        status = study_store_rows(service->store, run->study.id, &filter, job_note, jobs, error);
-    }
+    for (size_t state = 0; state < 2 && status == TALUS_OK; state++)
+        status = study_store_row_jobs(service->store, run->study.id, active[state], jobs, error);
     json_array_foreach(jobs, index, id)
     {
         struct job job = {0};

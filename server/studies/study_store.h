@@ -77,6 +77,10 @@ TALUS_MUST_CHECK enum talus_status
 study_store_rows(struct store *store, const char *id, const struct row_filter *filter,
                  bool (*visit)(const struct study_row *row, void *context), void *context,
                  struct talus_error *error);
+/* Adds the ids of the jobs of the rows in a state. */
+TALUS_MUST_CHECK enum talus_status study_store_row_jobs(struct store *store, const char *id,
+                                                        enum row_state state, json_t *ids,
+                                                        struct talus_error *error);
 /* TALUS_LIMIT, code "state", if the row does not wait. */
 TALUS_MUST_CHECK enum talus_status
 study_store_row_end(struct store *store, const struct row_end *end, struct talus_error *error);

@@ -29,22 +29,16 @@ static json_t *counts_json(const struct study *study)
     return counts;
 }
 
-static bool job_note(const struct study_row *row, void *context)
-{
-    return row->job == NULL || json_array_append_new(context, json_string(row->job)) == 0;
-}
-
 /* How far the rows that run are, together, in rows. */
 static double running_fraction(struct service *service, const struct study *study)
 {
-    const struct row_filter filter = {.state = ROW_RUNNING};
     struct talus_error error = {0};
     double fraction = 0;
     size_t index;
     const json_t *id;
     json_t *jobs = json_array();
     if (study->counts[ROW_RUNNING] > 0 &&
-        study_store_rows(service->store, study->id, &filter, job_note, jobs, &error) != TALUS_OK)
+        study_store_row_jobs(service->store, study->id, ROW_RUNNING, jobs, &error) != TALUS_OK)
         (void)fprintf(stderr, "talusd: study %s: %s\n", study->id, error.text);
     json_array_foreach(jobs, index, id)
     {
