@@ -2,7 +2,7 @@
 #include "attempt.h"
 
 #include "base/protocol.h"
-#include "folder.h"
+#include "json_file.h"
 #include "moment.h"
 
 #include <signal.h>
@@ -114,16 +114,6 @@ void attempt_read(struct attempt *attempt)
         (void)fprintf(stderr, "talusd: job %s: %s\n", attempt->id, error.text);
 }
 
-static json_t *receipt_load(const char *folder)
-{
-    int descriptor = folder_open(folder, PROTOCOL_RECEIPT_FILE);
-    if (descriptor < 0)
-        return NULL;
-    json_t *receipt = json_loadfd(descriptor, 0, NULL);
-    (void)close(descriptor);
-    return receipt;
-}
-
 /* The outcome of an attempt whose worker did not say how it ended. */
 static void outcome_silent(const struct attempt *attempt, struct job_outcome *outcome,
                            char detail[512])
@@ -222,6 +212,6 @@ void attempt_outcome(const struct attempt *attempt, struct job_outcome *outcome,
         return;
     }
     outcome_told(attempt, outcome, detail);
-    *receipt = receipt_load(attempt->folder);
+    *receipt = json_file_load(attempt->folder, PROTOCOL_RECEIPT_FILE);
     outcome->receipt = *receipt;
 }

@@ -4,6 +4,7 @@
 #include "base/protocol.h"
 #include "folder.h"
 #include "job.h"
+#include "json_text.h"
 
 #include <errno.h>
 #include <inttypes.h>
@@ -39,14 +40,28 @@ static bool id_known(const struct event_stream *stream, struct event_id id)
             stream->after.offset > 0);
 }
 
+/* Begins an event; the data and two line ends follow. */
+static void event_begin(struct event_stream *stream, struct event_id id, const char *event)
+{
+    struct text *out = &stream->out;
+    text_add_string(out, "id: ");
+    text_add_integer(out, id.offset);
+    text_add_string(out, "-");
+    text_add_integer(out, (int64_t)id.number);
+    text_add_string(out, "\nevent: ");
+    text_add_string(out, event);
+    text_add_string(out, "\ndata: ");
+    stream->last = id;
+}
+
 static void event_write(struct event_stream *stream, struct event_id id, const char *event,
                         const char *data)
 {
     if (id_known(stream, id))
         return;
-    text_print(&stream->out, "id: %" PRId64 "-%" PRIu64 "\nevent: %s\ndata: %s\n\n", id.offset,
-               id.number, event, data);
-    stream->last = id;
+    event_begin(stream, id, event);
+    text_add_string(&stream->out, data);
+    text_add_string(&stream->out, "\n\n");
 }
 
 struct survey {
@@ -132,19 +147,15 @@ static void column_write(struct event_stream *stream, struct event_id id, size_t
     const struct history_reader *history = &stream->history;
     if (id_known(stream, id))
         return;
-    struct text data = {0};
-    json_t *name = json_string(history->columns[column].name);
-    char *quoted = json_dumps(name, JSON_ENCODE_ANY);
-    text_print(&data, "{\"name\":%s,\"time\":[", quoted == NULL ? "null" : quoted);
-    text_add(&data, times->data, times->length);
-    text_add_string(&data, "],\"value\":[");
-    numbers_add(&data, values + column, row_count, history->column_count);
-    text_add_string(&data, "]}");
-    if (!data.failed)
-        event_write(stream, id, series_event(history->columns[column].name), data.data);
-    text_release(&data);
-    free(quoted);
-    json_decref(name);
+    struct text *out = &stream->out;
+    event_begin(stream, id, series_event(history->columns[column].name));
+    text_add_string(out, "{\"name\":");
+    json_text_add_string(out, history->columns[column].name);
+    text_add_string(out, ",\"time\":[");
+    text_add(out, times->data, times->length);
+    text_add_string(out, "],\"value\":[");
+    numbers_add(out, values + column, row_count, history->column_count);
+    text_add_string(out, "]}\n\n");
 }
 
 /* Tells the next chunk of the rows that a history line announced. */

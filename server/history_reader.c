@@ -3,22 +3,12 @@
 
 #include "base/protocol.h"
 #include "folder.h"
+#include "json_file.h"
 
-#include <jansson.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
 #include <unistd.h>
-
-static json_t *columns_load(const char *folder)
-{
-    int descriptor = folder_open(folder, PROTOCOL_HISTORY_COLUMNS_FILE);
-    if (descriptor < 0)
-        return NULL;
-    json_t *root = json_loadfd(descriptor, 0, NULL);
-    (void)close(descriptor);
-    return root;
-}
 
 static enum talus_status columns_copy(struct history_reader *history, const json_t *columns,
                                       struct talus_error *error)
@@ -45,7 +35,7 @@ enum talus_status history_reader_open(struct history_reader *history, const char
 {
     memset(history, 0, sizeof *history);
     history->descriptor = folder_open(folder, PROTOCOL_HISTORY_FILE);
-    json_t *root = columns_load(folder);
+    json_t *root = json_file_load(folder, PROTOCOL_HISTORY_COLUMNS_FILE);
     const json_t *columns = json_object_get(root, "columns");
     enum talus_status status;
     if (history->descriptor < 0 || json_array_size(columns) < 1)

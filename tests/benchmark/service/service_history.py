@@ -8,6 +8,8 @@ from service_seed import seed
 from talus_harness import wait_for
 
 GOAL_MS = 20
+# What looks at every name: texts that are too short for the index and in no name.
+SCANS = ("text of two letters, of none",)
 PAGE = 50
 
 
