@@ -189,6 +189,13 @@ static bool connection_open(const char *path, sqlite3 **database)
            store_execute(*database, "PRAGMA foreign_keys = ON");
 }
 
+/* Lists read rows from all over: [KiB] of pages that are kept between them. */
+static bool reader_open(const char *path, sqlite3 **database)
+{
+    return connection_open(path, database) &&
+           store_execute(*database, "PRAGMA cache_size = -16384");
+}
+
 static void connection_close(sqlite3 *database)
 {
     sqlite3_stmt *next = database == NULL ? NULL : sqlite3_next_stmt(database, NULL);
@@ -215,7 +222,7 @@ enum talus_status store_open(const char *path, struct store **result, struct tal
         status = store_failure(store->writer, error);
     if (status == TALUS_OK)
         status = store_schema_prepare(store->writer, error);
-    if (status == TALUS_OK && !connection_open(path, &store->reader))
+    if (status == TALUS_OK && !reader_open(path, &store->reader))
         status = store_failure(store->reader, error);
     if (status == TALUS_OK) {
         store->started = pthread_create(&store->thread, NULL, writer_main, store) == 0;
