@@ -84,7 +84,8 @@ struct talus_solver_options {
     double time_step; /* [s]; 0: automatic */
     double courant;   /* [-] share of the critical step, for automatic steps */
     bool allow_unstable;
-    size_t shape_index;                   /* into the table of shapes (solver/shapes) */
+    size_t shape_index; /* into the table of shapes (solver/shapes); 0: linear (a scene file that
+                           names none gets bspline2) */
     enum talus_gimp_scaling gimp_scaling; /* what the size of particles of gimp_scaled follows */
     size_t transfer_index; /* into the table of transfers (solver/transfers); 0: FLIP */
     double pic_rate;       /* FLIP: lambda [1/s]; 0: pure FLIP */

@@ -14,6 +14,13 @@ static const char *const shape_words[] = {
 #undef SHAPE
     NULL,
 };
+/* What most scenes lose least by (docs/methods.md, "The default"). */
+enum {
+#define SHAPE(symbol) SHAPE_INDEX_##symbol,
+#include "shapes/shapes.def"
+#undef SHAPE
+    SHAPE_INDEX_DEFAULT = SHAPE_INDEX_bspline2
+};
 static const char *const gimp_scaling_words[] = {"volume", "stretch", NULL};
 static const char *const transfer_words[] = {
 #define TRANSFER(symbol) #symbol,
@@ -201,6 +208,7 @@ const struct scene_field scene_solver_fields[] = {
      .unit = "1",
      .choices = shape_words,
      .storage = SCENE_STORE_SIZE,
+     .default_value = SHAPE_INDEX_DEFAULT,
      .offset = AT(shape_index),
      .meaning = "shape functions"},
     {.key = "gimp_scaling",

@@ -183,7 +183,7 @@ class WholeRun(DaemonTest):
 
     def test_effective_scene(self):
         scene = self.get("/files/scene.json").json()
-        self.assertEqual(scene["solver"]["shape"], "linear")
+        self.assertEqual(scene["solver"]["shape"], "bspline2")
         self.assertEqual(scene["solver"]["stress_update"], "modified_last")
         again = self.client.post("/v1/forecast", {"scene": scene})
         self.assertEqual(again.status, 200, again)

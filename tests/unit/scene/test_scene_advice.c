@@ -111,30 +111,32 @@ static const struct advice_case outputs[] = {
 
 #define NODES "{\"anti_locking\": {\"control\": \"node\"}}"
 #define POISSON "/materials/rubber/poisson_ratio"
+/* The default shape locks less than averages are for. */
+#define LINEAR "{\"shape\": \"linear\"}"
 static const struct advice_case averages[] = {
-    {CONTROL, "locking", BASE_PLANE, {{"/solver", "{}"}}, {{"/solver/shape", "\"bspline2\""}}},
+    {CONTROL, "locking", BASE_PLANE, {{"/solver", LINEAR}}, {{"/solver", "{}"}}},
     {CONTROL,
      "locking",
      BASE_PLANE,
      {{"/solver", "{\"shape\": \"gimp\"}"}},
      {{"/solver/shape", "\"bspline3\""}}},
-    {CONTROL, "locking", BASE_SOLID, {{POISSON, "0.49"}}, {{POISSON, "0.3"}}},
+    {CONTROL, "locking", BASE_SOLID, {{POISSON, "0.49"}, {"/solver", LINEAR}}, {{POISSON, "0.3"}}},
     {CONTROL,
      "locking",
      BASE_FLUID,
-     {{"/solver", "{}"}},
-     {{"/solver", "{\"anti_locking\": {\"control\": \"cell\"}}"}}},
+     {{"/solver", LINEAR}},
+     {{"/solver", "{\"shape\": \"linear\", \"anti_locking\": {\"control\": \"cell\"}}"}}},
     /* What does not go into the plane goes across it. */
     {CONTROL,
      "locking",
      BASE_AXIAL,
-     {{POISSON, "0.49"}, {"/bodies/0/sphere/centre", "[1, 1]"}},
+     {{POISSON, "0.49"}, {"/bodies/0/sphere/centre", "[1, 1]"}, {"/solver", LINEAR}},
      {{"/dimension", "\"plane_stress\""}}},
     /* One cell between walls has one state. */
     {CONTROL,
      "locking",
      BASE_PLANE,
-     {{"/solver", "{}"}},
+     {{"/solver", LINEAR}},
      {{"/grid/cell", "2"}, {"/bodies/0/box/max", "[2, 2]"}}},
     /* A material of which there is nothing. */
     {CONTROL,
@@ -143,7 +145,8 @@ static const struct advice_case averages[] = {
      {{"/materials/jelly",
        "{\"model\": \"linear_elastic\", \"density\": 1000, \"young_modulus\": 1e6,"
        " \"poisson_ratio\": 0.49}"},
-      {"/bodies/0/material", "\"jelly\""}},
+      {"/bodies/0/material", "\"jelly\""},
+      {"/solver", LINEAR}},
      {{"/bodies/0/material", "\"rubber\""}}},
     {CONTROL,
      "superfluous_anti_locking",

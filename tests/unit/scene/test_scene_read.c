@@ -73,7 +73,7 @@ static void defaults_are_the_documented_ones(void **state)
     ASSERT_WITHIN(solver->time_step, 0.0, 0.0);
     ASSERT_WITHIN(solver->courant, 0.4, 0.0);
     assert_false(solver->allow_unstable);
-    assert_string_equal(shape_table[solver->shape_index]->name, "linear");
+    assert_string_equal(shape_table[solver->shape_index]->name, "bspline2");
     assert_int_equal(solver->stress_update, TALUS_STRESS_MODIFIED_LAST);
     assert_int_equal(solver->strain, TALUS_STRAIN_FINITE);
     assert_int_equal(solver->anti_locking, TALUS_CONTROL_NONE);
