@@ -25,7 +25,7 @@ def falling_block(duration=0.3, cell=0.05, checkpoints=60):
         "dimension": "plane_strain",
         "duration": duration,
         "grid": {"cell": cell, "min": [0, 0], "max": [1.0, 1.0]},
-        "solver": {"kind": "explicit", "strain": "finite", "courant": 0.1},
+        "solver": {"kind": "explicit", "shape": "linear", "strain": "finite", "courant": 0.1},
         "materials": {"rubber": {"model": "linear_elastic", "density": 1000, "young_modulus": 1e5,
                                  "poisson_ratio": 0.3}},
         "bodies": [{"name": "block", "material": "rubber", "velocity": [0, -1.0],
@@ -183,7 +183,7 @@ class WholeRun(DaemonTest):
 
     def test_effective_scene(self):
         scene = self.get("/files/scene.json").json()
-        self.assertEqual(scene["solver"]["shape"], "bspline2")
+        self.assertEqual(scene["solver"]["transfer"], "flip")
         self.assertEqual(scene["solver"]["stress_update"], "modified_last")
         again = self.client.post("/v1/forecast", {"scene": scene})
         self.assertEqual(again.status, 200, again)

@@ -101,6 +101,7 @@ class Conversation(unittest.TestCase):
         self.assertEqual(set(answer),
                          {"ok", "effective", "forecast", "advice", "warnings", "hash", "build"})
         self.assertEqual(answer["effective"]["solver"]["courant"], 0.4)
+        self.assertEqual(answer["effective"]["solver"]["shape"], "bspline2")
         again = self.helper.ask(op="check", scene=answer["effective"])
         self.assertEqual(again["effective"], answer["effective"])
         self.assertEqual(again["hash"], answer["hash"])
