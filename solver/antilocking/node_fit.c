@@ -33,7 +33,9 @@ void node_fit_init(struct node_fit *fit, const struct talus_scene *scene, size_t
     const size_t moments = fit->linear_count > 0 ? fit->axis_count + triangle(fit->axis_count) : 0;
     fit->quantity_stride = (uint32_t)(fit->quantity_count + fit->linear_count * fit->axis_count);
     fit->set_stride = (uint32_t)(1 + moments) + 2 * fit->quantity_stride;
-    fit->component_count = (uint32_t)fit->set_count * fit->set_stride + 1;
+    fit->shares_mass = fit->set_count == 1 && fit->averaging == TALUS_AVERAGING_WEIGHTED;
+    fit->wants_divergence = solver->viscous_damping > 0;
+    fit->component_count = (uint32_t)fit->set_count * fit->set_stride + fit->wants_divergence;
 }
 
 void node_fit_place(struct node_fit *fit, uint32_t first)
@@ -141,10 +143,12 @@ static const real *multiply(const struct node_fit_block *at, const real *a, cons
 }
 
 void node_fit_scatter_masses(const struct node_fit *fit, const struct node_fit_block *at,
-                             size_t set, const real *weight)
+                             size_t set, const real *weight, bool taken)
 {
     uint32_t component = set_component(fit, set);
-    scatter_sum(fit, at, weight, NULL, component++);
+    if (!(taken && fit->shares_mass))
+        scatter_sum(fit, at, weight, NULL, component);
+    component++;
     if (fit->linear_count == 0)
         return;
     for (size_t axis = 0; axis < fit->axis_count; axis++)
@@ -193,6 +197,13 @@ void node_fit_clear(const struct node_fit *fit, const struct node_blocks *nodes,
            fit->component_count * LANE_COUNT * sizeof(real));
 }
 
+void node_fit_take_mass(const struct node_fit *fit, const struct node_blocks *nodes, size_t block)
+{
+    if (fit->shares_mass)
+        lanes_store(node_values(nodes, block, set_component(fit, 0)),
+                    lanes_load(node_values(nodes, block, nodes->layout.mass)));
+}
+
 /* How the particles around the nodes of a block lie. */
 struct node_support {
     lanes inverse_mass;  /* 0 without mass */
@@ -213,10 +224,10 @@ static void load_support(const struct node_fit *fit, const struct node_blocks *n
     size_t component = set_component(fit, set);
     const lanes mass = load_component(nodes, block, component++);
     const lane_mask loaded = mass > 0;
-    memset(support, 0, sizeof *support);
     support->inverse_mass = lanes_keep(loaded, 1 / lanes_select(loaded, mass, lanes_splat(1)));
+    support->fall_backs = 0;
     if (fit->linear_count == 0)
-        return;
+        return; /* the rest is not read */
     lanes C[3][3] = {{{0}}};
     assert(fit->axis_count <= 3);
     for (size_t axis = 0; axis < fit->axis_count; axis++) {
@@ -297,7 +308,7 @@ size_t node_fit_solve(const struct node_fit *fit, const struct node_blocks *node
         solve_set(fit, nodes, block, set, what, &support);
         fall_backs += support.fall_backs;
     }
-    if (what == NODE_FIT_STRAIN)
+    if (what == NODE_FIT_STRAIN && fit->wants_divergence)
         solve_divergence(fit, nodes, block);
     return fall_backs;
 }

@@ -17,6 +17,8 @@ struct node_fit {
     enum talus_anti_locking_averaging averaging;
     bool trace_only;     /* one quantity, the trace; else the components of the tensor */
     bool constant_trace; /* of the normal components only the mean of the trace is left */
+    bool shares_mass;    /* the sum of the only set is the mass at the nodes */
+    bool wants_divergence;
     size_t axis_count;
     size_t normal_count;   /* components that make up the trace: 3, or 2 in plane stress */
     size_t quantity_count; /* 1, or the components */
@@ -25,7 +27,7 @@ struct node_fit {
     uint32_t first;           /* node component of the first set */
     uint32_t set_stride;      /* components of a set */
     uint32_t quantity_stride; /* components of the strain's, or the stress's, quantities */
-    uint32_t divergence;      /* node component of the mean divergence, after the sets */
+    uint32_t divergence;      /* node component of the mean divergence, after the sets, if wanted */
     uint32_t component_count; /* all of them */
     int32_t origin[3];        /* cell in the middle of the grid: coordinates count from there */
 };
@@ -48,9 +50,10 @@ struct node_fit_block {
 
 /* Coordinates of the particles, where linear quantities need them. */
 void node_fit_locate(const struct node_fit *fit, const struct node_fit_block *at);
-/* Adds the masses of a set and their moments. weight: mass of the slots of the material, else 0. */
+/* Adds the masses of a set, but for ones that node_fit_take_mass has taken (`taken`), and their
+ * moments. weight: mass of the slots of the material, else 0. */
 void node_fit_scatter_masses(const struct node_fit *fit, const struct node_fit_block *at,
-                             size_t set, const real *weight);
+                             size_t set, const real *weight, bool taken);
 /* Adds quantities[quantity_count]. */
 void node_fit_scatter(const struct node_fit *fit, const struct node_fit_block *at, size_t set,
                       enum node_fit_what what, const real *weight, real *const *quantities);
@@ -65,6 +68,9 @@ void node_fit_gather_divergence(const struct node_fit *fit, const struct node_fi
 
 /* Node blocks; independent of each other. */
 void node_fit_clear(const struct node_fit *fit, const struct node_blocks *nodes, size_t block);
+/* Takes the mass at the nodes, of the present positions, if the set has the same (`shares_mass`).
+ */
+void node_fit_take_mass(const struct node_fit *fit, const struct node_blocks *nodes, size_t block);
 /* Sums -> values at the nodes; with the strain the divergence too. Returns the number of nodes with
  * mass and without a linear fit that was wanted: these take the constant one. */
 size_t node_fit_solve(const struct node_fit *fit, const struct node_blocks *nodes, size_t block,

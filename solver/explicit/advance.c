@@ -48,9 +48,12 @@ static void record_fields(const struct run *run, const struct particle_block *bl
                           const struct block_scratch *scratch, size_t count, bool flowed)
 {
     const struct particle_layout *layout = &run->grid.layout;
-    for (uint32_t component = 0; component < layout->component_count[PARTICLE_STRESS]; component++)
-        memcpy(particle_values(layout, block, PARTICLE_STRESS, component),
-               scratch->stress[component], count * sizeof(real));
+    for (uint32_t component = 0; component < layout->component_count[PARTICLE_STRESS];
+         component++) {
+        real *stress = particle_values(layout, block, PARTICLE_STRESS, component);
+        if (stress != scratch->stress[component]) /* it can be lent (split_passes.c) */
+            memcpy(stress, scratch->stress[component], count * sizeof(real));
+    }
     if (layout->component_count[PARTICLE_PLASTIC_STRAIN] == 0 || !flowed)
         return;
     real *total = particle_values(layout, block, PARTICLE_PLASTIC_STRAIN, 0);

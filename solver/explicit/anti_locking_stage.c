@@ -307,25 +307,21 @@ static void sum_rates(const struct block_scratch *scratch, size_t count, real *d
 }
 
 void anti_locking_scatter_strain(struct run *run, const struct particle_block *block,
-                                 struct block_scratch *scratch)
+                                 struct block_scratch *scratch, bool still)
 {
     const size_t count = (size_t)block->row_count * LANE_COUNT;
     const uint64_t present = material_stage_present(run, block);
     const struct shape_context context = run_shape_context(run, run->time_step);
     const struct node_fit_block at = make_block(run, block, &context, scratch);
-    real *const *quantities = scratch->strain;
-    if (run->node_fit.trace_only) {
-        kinematics_traces(run, block, scratch->fit[0]);
-        quantities = scratch->fit;
-    }
+    real *const *quantities = quantities_of(run, scratch, count, scratch->strain);
     for (size_t material = 0; material < run->scene.material_count; material++) {
         if ((present >> material & 1) == 0)
             continue;
         const real *weight = material_stage_weights(run, block, scratch, material, present);
-        node_fit_scatter_masses(&run->node_fit, &at, material, weight);
+        node_fit_scatter_masses(&run->node_fit, &at, material, weight, !still);
         node_fit_scatter(&run->node_fit, &at, material, NODE_FIT_STRAIN, weight, quantities);
     }
-    if (!(run->scene.solver.viscous_damping > 0))
+    if (!run->node_fit.wants_divergence)
         return;
     sum_rates(scratch, count, scratch->mean);
     node_fit_scatter_divergence(&run->node_fit, &at,

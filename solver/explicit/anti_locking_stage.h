@@ -31,9 +31,9 @@ void anti_locking_stress(struct run *run, const struct particle_block *block,
                          const struct anti_locking *fit, struct block_scratch *scratch);
 
 /* Fits over nodes: adds the trial strains of a block, and the divergence of its motion if it is
- * damped. */
+ * damped. `still`: there is no mass at the nodes yet. */
 void anti_locking_scatter_strain(struct run *run, const struct particle_block *block,
-                                 struct block_scratch *scratch);
+                                 struct block_scratch *scratch, bool still);
 /* Fits over nodes: replaces the stresses of a block in scratch. */
 void anti_locking_gather_stress(struct run *run, const struct particle_block *block,
                                 struct block_scratch *scratch);

@@ -282,8 +282,6 @@ static void advance_volumetric(const struct run *run, const struct particle_bloc
 static void advance_tensor(const struct run *run, struct block_scratch *scratch, size_t count,
                            real *const e[6])
 {
-    if (run->finite_strain && run->node_fit.trace_only)
-        return;
     if (run->finite_strain) {
         /* Slots without a positive definite b come out as NAN and are found by health. */
         (void)log_strain_batch(count, run->strain_components, e, scratch->strain);
@@ -438,8 +436,9 @@ void kinematics_store(struct run *run, const struct particle_block *block,
     }
 }
 
-void kinematics_reload(const struct run *run, const struct particle_block *block,
-                       struct block_scratch *scratch)
+/* Stored form -> strain of the materials. */
+static void reload(const struct run *run, const struct particle_block *block,
+                   struct block_scratch *scratch)
 {
     const size_t count = (size_t)block->row_count * LANE_COUNT;
     real *stored[6];
@@ -461,63 +460,33 @@ void kinematics_reload(const struct run *run, const struct particle_block *block
         out_of_plane_strain(run, block, scratch, count);
 }
 
+bool kinematics_carries(const struct run *run)
+{
+    return run->node_fit.active && run->any_tensor && run->finite_strain;
+}
+
+void kinematics_recall(const struct run *run, const struct particle_block *block,
+                       struct block_scratch *scratch)
+{
+    const size_t count = (size_t)block->row_count * LANE_COUNT;
+    if (!kinematics_carries(run)) {
+        reload(run, block, scratch);
+        return;
+    }
+    reference_volumes(run, block, scratch, count);
+    if (run->any_rate)
+        volume_ratios(run, block, scratch, count);
+    for (uint32_t component = 0; component < run->strain_components; component++)
+        memcpy(scratch->strain[component],
+               particle_values(&run->grid.layout, block, PARTICLE_STRESS, component),
+               count * sizeof(real));
+}
+
 void kinematics_load(const struct run *run, const struct particle_block *block,
                      struct block_scratch *scratch)
 {
-    kinematics_reload(run, block, scratch);
+    reload(run, block, scratch);
     volume_ratios(run, block, scratch, (size_t)block->row_count * LANE_COUNT);
-}
-
-/* det(1 + 2 e) - 1 without cancellation; in plane stress of the plane. */
-static lanes stretch_increment(const struct run *run, real *const e[6], size_t slot)
-{
-    const size_t components = run->strain_components;
-    const lanes x = 2 * lanes_load(e[0] + slot), y = 2 * lanes_load(e[1] + slot);
-    lanes z = {0}, xy = {0}, yz = {0}, xz = {0};
-    if (run->normal_components == 3)
-        z = 2 * lanes_load(e[2] + slot);
-    if (components > 3)
-        xy = 2 * lanes_load(e[3] + slot);
-    if (components > 4) {
-        yz = 2 * lanes_load(e[4] + slot);
-        xz = 2 * lanes_load(e[5] + slot);
-    }
-    const lanes minor_x = y * z - yz * yz, minor_y = x * z - xz * xz, minor_z = x * y - xy * xy;
-    return x + y + z + minor_x + minor_y + minor_z + x * minor_x - xy * (xy * z - yz * xz) +
-           xz * (xy * yz - y * xz);
-}
-
-static void tensor_traces(const struct run *run, size_t count, real *const stored[6], real *trace)
-{
-    if (!run->finite_strain) {
-        memcpy(trace, stored[0], count * sizeof(real));
-        for (size_t component = 1; component < run->normal_components; component++) {
-            for (size_t slot = 0; slot < count; slot++)
-                trace[slot] += stored[component][slot];
-        }
-        return;
-    }
-    for (size_t slot = 0; slot < count; slot += LANE_COUNT)
-        lanes_store(trace + slot, stretch_increment(run, stored, slot));
-    log1p_array(count, trace, trace);
-    for (size_t slot = 0; slot < count; slot += LANE_COUNT)
-        lanes_store(trace + slot, (real)0.5 * lanes_load(trace + slot));
-}
-
-void kinematics_traces(const struct run *run, const struct particle_block *block, real *trace)
-{
-    const size_t count = (size_t)block->row_count * LANE_COUNT;
-    real *stored[6];
-    strain_arrays(run, block, stored);
-    if (!run->any_tensor) {
-        memcpy(trace, stored[0], count * sizeof(real));
-        return;
-    }
-    tensor_traces(run, count, stored, trace);
-    for (size_t slot = 0; run->any_volumetric && slot < count; slot++) {
-        if (material_of(run, block, slot)->model->volumetric)
-            trace[slot] = stored[0][slot];
-    }
 }
 
 void kinematics_volumes(const struct run *run, const struct particle_block *block,

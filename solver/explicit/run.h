@@ -150,7 +150,6 @@ struct run {
     bool gravity_deviates;    /* from that of the scene, which the potential energy knows */
     struct node_fit node_fit; /* of anti-locking */
     bool reloads_gradient;    /* a material wants d or the spin; for passes that are split */
-    bool shows_stress;        /* frames or probes want it */
 
     struct run_callbacks callbacks;
     struct particle_force forces[PARTICLE_FORCE_MAX];
@@ -344,6 +343,9 @@ void run_choose_time_step(struct run *run);
 /* What advance_tile (`still`: start_tile) does for all tiles, in passes of their own with fits over
  * nodes between strain and stress, and between stress and forces. */
 void run_split_advance(struct run *run, bool still);
+/* Before, and before the nodes are updated: clears what is fitted over nodes and takes their
+ * masses, which are there but when the run is started (`still`). */
+void run_split_begin(struct run *run, bool still);
 
 /* ---- step.c ---- */
 TALUS_MUST_CHECK enum talus_status run_take_step(struct run *run, struct talus_error *error);

@@ -18,6 +18,39 @@ static bool fits_stress(const struct run *run)
     return run->scene.solver.anti_locking_apply == TALUS_APPLY_STRAIN_AND_STRESS;
 }
 
+/* Arrays of a tensor in scratch are those of the stress of a block's particles while it is lent. */
+struct loan {
+    real **tensor, *own[6];
+};
+
+static struct loan lend(const struct run *run, const struct particle_block *block, real *tensor[6])
+{
+    struct loan loan = {.tensor = tensor};
+    memcpy(loan.own, tensor, sizeof loan.own);
+    for (uint32_t component = 0; component < run->strain_components; component++)
+        tensor[component] = particle_values(&run->grid.layout, block, PARTICLE_STRESS, component);
+    return loan;
+}
+
+static void give_back(const struct loan *loan)
+{
+    memcpy(loan->tensor, loan->own, sizeof loan->own);
+}
+
+/* Trial strains to the nodes, and to where the next part finds them. */
+static void fit_strain(struct run *run, struct block_scratch *scratch, struct particle_block *block,
+                       struct tile_sums *sums, bool still)
+{
+    const bool carries = kinematics_carries(run);
+    struct loan loan = {.tensor = NULL};
+    if (carries)
+        loan = lend(run, block, scratch->strain);
+    advance_strain(run, scratch, block, sums, still);
+    anti_locking_scatter_strain(run, block, scratch, still);
+    if (carries)
+        give_back(&loan);
+}
+
 static void fit_strain_tile(struct run *run, size_t index, struct block_scratch *scratch,
                             bool still)
 {
@@ -30,8 +63,7 @@ static void fit_strain_tile(struct run *run, size_t index, struct block_scratch 
         tile_look_ahead(run, entry, scratch);
         if (block->row_count == 0)
             continue;
-        advance_strain(run, scratch, block, sums, still);
-        anti_locking_scatter_strain(run, block, scratch);
+        fit_strain(run, scratch, block, sums, still);
         fetch_rest(&scratch->ahead);
         stage_clock_lap(scratch->clock, STAGE_ANTI_LOCKING);
     }
@@ -51,7 +83,7 @@ static void reload_strain(struct run *run, struct block_scratch *scratch,
             out_of_plane_increment(run, block, scratch, count, time_step);
         kinematics_rates(run, scratch, count, time_step);
     }
-    kinematics_reload(run, block, scratch);
+    kinematics_recall(run, block, scratch);
     stage_clock_lap(scratch->clock, STAGE_KINEMATICS);
 }
 
@@ -83,11 +115,14 @@ static void fit_stress_tile(struct run *run, size_t index, struct block_scratch 
         if (block->row_count == 0)
             continue;
         reload_strain(run, scratch, block, still);
-        advance_stress(run, scratch, block, sums, still);
         if (fits_stress(run)) {
+            const struct loan loan = lend(run, block, scratch->stress);
+            advance_stress(run, scratch, block, sums, still);
+            give_back(&loan);
             fetch_rest(&scratch->ahead);
             continue;
         }
+        advance_stress(run, scratch, block, sums, still);
         finish(run, scratch, block_index, tile, sums, still);
     }
     stage_clock_lap(scratch->clock, STAGE_SECOND_PASS);
@@ -97,21 +132,12 @@ static void fit_stress_tile(struct run *run, size_t index, struct block_scratch 
 static void reload_stress(struct run *run, struct block_scratch *scratch,
                           const struct particle_block *block)
 {
-    const struct particle_layout *layout = &run->grid.layout;
-    const size_t bytes = (size_t)block->row_count * LANE_COUNT * sizeof(real);
     if (run->measures)
         kinematics_load(run, block, scratch);
     else
         kinematics_volumes(run, block, scratch);
     scratch->materials = material_stage_present(run, block);
-    for (uint32_t component = 0; component < run->strain_components; component++)
-        memcpy(scratch->stress[component],
-               particle_values(layout, block, PARTICLE_STRESS, component), bytes);
     anti_locking_gather_stress(run, block, scratch);
-    for (uint32_t component = 0; run->shows_stress && component < run->strain_components;
-         component++)
-        memcpy(particle_values(layout, block, PARTICLE_STRESS, component),
-               scratch->stress[component], bytes);
     stage_clock_lap(scratch->clock, STAGE_ANTI_LOCKING);
 }
 
@@ -125,8 +151,10 @@ static void fit_force_tile(struct run *run, size_t index, struct block_scratch *
         tile_look_ahead(run, entry, scratch);
         if (block->row_count == 0)
             continue;
+        const struct loan loan = lend(run, block, scratch->stress);
         reload_stress(run, scratch, block);
         finish(run, scratch, block_index, tile, &run->tile_sums[index], still);
+        give_back(&loan);
     }
     stage_clock_lap(scratch->clock, STAGE_SECOND_PASS);
 }
@@ -144,11 +172,14 @@ PASS(still_stress_tile, fit_stress_tile, true)
 PASS(still_force_tile, fit_force_tile, true)
 #undef PASS
 
-static void clear_nodes(struct run *run)
+void run_split_begin(struct run *run, bool still)
 {
 #pragma omp parallel for schedule(static) num_threads(run->threads) if (run->threads > 1)
-    for (size_t block = 0; block < run->grid.nodes.count; block++)
+    for (size_t block = 0; block < run->grid.nodes.count; block++) {
         node_fit_clear(&run->node_fit, &run->grid.nodes, block);
+        if (!still)
+            node_fit_take_mass(&run->node_fit, &run->grid.nodes, block);
+    }
 }
 
 static void solve_nodes(struct run *run, enum node_fit_what what)
@@ -164,7 +195,6 @@ static void solve_nodes(struct run *run, enum node_fit_what what)
 
 void run_split_advance(struct run *run, bool still)
 {
-    clear_nodes(run);
     run_pass(run, still ? still_strain_tile : moving_strain_tile);
     solve_nodes(run, NODE_FIT_STRAIN);
     run_pass(run, still ? still_stress_tile : moving_stress_tile);

@@ -107,6 +107,8 @@ static void take_passes(struct run *run, struct stage_clock *clock)
     const struct talus_solver_options *options = &run->scene.solver;
     if (run->grid.nodes.layout.volume != 0)
         run_mark_empty_nodes(run);
+    if (run->node_fit.active)
+        run_split_begin(run, false);
     run->pic_share = transfer_of(options)->pic_share(options, run->time_step);
     if (!first)
         run_treat_light_nodes(run);
@@ -130,13 +132,24 @@ static void take_passes(struct run *run, struct stage_clock *clock)
         run_pass(run, first ? move_tile : advance_tile);
 }
 
+/* Mass and forces of the particles where they are. */
+static void start_pass(struct run *run)
+{
+    if (!run->node_fit.active) {
+        run_pass(run, start_tile);
+        return;
+    }
+    run_split_begin(run, true);
+    run_split_advance(run, true);
+}
+
 /* What the last step left at the nodes, once more. */
 static void renew_nodes(struct run *run)
 {
     struct node_blocks *nodes = &run->grid.nodes;
     memset(nodes->values, 0, nodes->count * node_block_bytes(nodes));
     partition_outbox(run);
-    run_pass(run, start_tile);
+    start_pass(run);
 }
 
 /* Blocks and walls as the step needs them. */
@@ -223,10 +236,7 @@ enum talus_status run_start(struct run *run, struct talus_error *error)
         run_reserve_scratch(run) != 0)
         return talus_error_set(error, TALUS_MEMORY, "memory", "", "out of memory at the start");
     partition_outbox(run);
-    if (run->node_fit.active)
-        run_split_advance(run, true);
-    else
-        run_pass(run, start_tile);
+    start_pass(run);
     if (run->grid.layout.component_count[PARTICLE_AFFINE] > 0)
         run_start_affine(run);
     const struct tile_sums sums = sum_tiles(run);

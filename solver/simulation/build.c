@@ -56,13 +56,14 @@ static bool shows_stress(const struct talus_scene *scene)
            scene_wants(scene, TALUS_FIELD_VON_MISES);
 }
 
-/* From pass to pass, for stresses that are fitted over nodes. */
-static bool carries_stress(const struct talus_scene *scene)
+/* From pass to pass, where strains are fitted over nodes: logarithms of tensors, then stresses. */
+static bool carries_stress(const struct talus_scene *scene, bool volumetric)
 {
     const struct talus_solver_options *solver = &scene->solver;
     return (solver->anti_locking == TALUS_CONTROL_NODE ||
             solver->anti_locking == TALUS_CONTROL_HYBRID) &&
-           solver->anti_locking_apply == TALUS_APPLY_STRAIN_AND_STRESS;
+           (solver->anti_locking_apply == TALUS_APPLY_STRAIN_AND_STRESS ||
+            (!volumetric && solver->strain == TALUS_STRAIN_FINITE));
 }
 
 static size_t strain_components(const struct talus_scene *scene)
@@ -89,7 +90,7 @@ void run_layout(const struct talus_scene *scene, struct particle_layout *layout)
     count[PARTICLE_STRAIN] = volumetric ? 1 : tensor;
     count[PARTICLE_HISTORY] = history;
     count[PARTICLE_PLASTIC_STRAIN] = scene_wants(scene, TALUS_FIELD_PLASTIC_STRAIN);
-    count[PARTICLE_STRESS] = shows_stress(scene) || carries_stress(scene) ? tensor : 0;
+    count[PARTICLE_STRESS] = shows_stress(scene) || carries_stress(scene, volumetric) ? tensor : 0;
     count[PARTICLE_DISPLACEMENT] = scene_wants(scene, TALUS_FIELD_DISPLACEMENT) ? axes : 0;
     const bool finite = scene->solver.strain == TALUS_STRAIN_FINITE;
     const bool strain = scene_wants(scene, TALUS_FIELD_STRAIN);
@@ -296,7 +297,6 @@ enum talus_status run_build(struct run *run, const struct talus_scene *scene,
     node_fit_init(&run->node_fit, scene, run->strain_components);
     node_fit_place(&run->node_fit,
                    node_layout_extend(&run->grid.nodes.layout, run->node_fit.component_count));
-    run->shows_stress = shows_stress(scene);
     run_set_callbacks(run, options);
     run_add_slopes(run);
     run_add_tractions(run);

@@ -12,18 +12,26 @@ struct regression_scene {
     const char *name, *model;
     size_t axis_count;
     bool last; /* stress_update: last */
-    bool anti_locking;
+    enum talus_anti_locking_control control;
+    enum talus_anti_locking_field field;
 };
 
 /* One per main kernel. */
 static const struct regression_scene scenes[] = {
-    {"soil_3d", "drucker_prager_cap", 3, false, false},
-    {"soil_3d_last", "drucker_prager_cap", 3, true, false},
-    {"soil_3d_anti_locking", "drucker_prager_cap", 3, false, true},
-    {"elastic_2d_last", "linear_elastic", 2, true, false},
-    {"fluid_2d_anti_locking", "newtonian_fluid", 2, false, true},
-    {"metal_3d_last", "j2", 3, true, false},
-    {"mobilised_3d", "matsuoka_nakai", 3, false, false},
+    {"soil_3d", "drucker_prager_cap", 3, false, TALUS_CONTROL_NONE, TALUS_FIT_VOLUMETRIC},
+    {"soil_3d_last", "drucker_prager_cap", 3, true, TALUS_CONTROL_NONE, TALUS_FIT_VOLUMETRIC},
+    {"soil_3d_anti_locking", "drucker_prager_cap", 3, false, TALUS_CONTROL_CELL,
+     TALUS_FIT_VOLUMETRIC},
+    {"soil_3d_node", "drucker_prager_cap", 3, false, TALUS_CONTROL_NODE, TALUS_FIT_VOLUMETRIC},
+    {"elastic_2d_last", "linear_elastic", 2, true, TALUS_CONTROL_NONE, TALUS_FIT_VOLUMETRIC},
+    {"elastic_2d_node", "linear_elastic", 2, true, TALUS_CONTROL_NODE, TALUS_FIT_VOLUMETRIC},
+    {"elastic_2d_node_full", "linear_elastic", 2, true, TALUS_CONTROL_NODE, TALUS_FIT_FULL},
+    {"fluid_2d_anti_locking", "newtonian_fluid", 2, false, TALUS_CONTROL_CELL,
+     TALUS_FIT_VOLUMETRIC},
+    {"metal_3d_last", "j2", 3, true, TALUS_CONTROL_NONE, TALUS_FIT_VOLUMETRIC},
+    {"metal_3d_node", "j2", 3, true, TALUS_CONTROL_NODE, TALUS_FIT_VOLUMETRIC},
+    {"metal_3d_node_full", "j2", 3, true, TALUS_CONTROL_NODE, TALUS_FIT_FULL},
+    {"mobilised_3d", "matsuoka_nakai", 3, false, TALUS_CONTROL_NONE, TALUS_FIT_VOLUMETRIC},
 };
 
 /* A block that slides over a rough floor and yields. */
@@ -40,8 +48,8 @@ static void build(struct simulation_fixture *fixture, const struct regression_sc
     simulation_fixture_add_plane(fixture, "floor", 1, 0.2, 1, "friction", 0.3);
     if (scene->last)
         fixture->scene.solver.stress_update = TALUS_STRESS_LAST;
-    if (scene->anti_locking)
-        fixture->scene.solver.anti_locking = TALUS_CONTROL_CELL;
+    fixture->scene.solver.anti_locking = scene->control;
+    fixture->scene.solver.anti_locking_field = scene->field;
 }
 
 /* What callgrind counts. */

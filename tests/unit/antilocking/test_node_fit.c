@@ -145,7 +145,7 @@ static double round_trip(struct bench *bench, double slope)
                 }
                 if (back)
                     continue;
-                node_fit_scatter_masses(&bench->fit, &arrays.at, material, arrays.weight);
+                node_fit_scatter_masses(&bench->fit, &arrays.at, material, arrays.weight, false);
                 node_fit_scatter(&bench->fit, &arrays.at, material, NODE_FIT_STRAIN, arrays.weight,
                                  arrays.quantities);
             }
@@ -215,7 +215,7 @@ static void test_singular(void **state)
             arrays.values[component][slot] = (real)2;
     }
     node_fit_locate(&bench.fit, &arrays.at);
-    node_fit_scatter_masses(&bench.fit, &arrays.at, 0, arrays.weight);
+    node_fit_scatter_masses(&bench.fit, &arrays.at, 0, arrays.weight, false);
     node_fit_scatter(&bench.fit, &arrays.at, 0, NODE_FIT_STRAIN, arrays.weight, arrays.quantities);
     size_t fall_backs = 0;
     for (size_t block = 0; block < bench.grid.nodes.count; block++)
