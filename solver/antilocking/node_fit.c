@@ -226,8 +226,6 @@ static void load_support(const struct node_fit *fit, const struct node_blocks *n
     const lane_mask loaded = mass > 0;
     support->inverse_mass = lanes_keep(loaded, 1 / lanes_select(loaded, mass, lanes_splat(1)));
     support->fall_backs = 0;
-    if (fit->linear_count == 0)
-        return; /* the rest is not read */
     lanes C[3][3] = {{{0}}};
     assert(fit->axis_count <= 3);
     for (size_t axis = 0; axis < fit->axis_count; axis++) {
@@ -278,13 +276,22 @@ static void solve_set(const struct node_fit *fit, const struct node_blocks *node
             trace_rise += climb;
         value[quantity] = mean + climb;
     }
-    const bool levelled = fit->constant_trace && !fit->trace_only;
     for (size_t quantity = 0; quantity < fit->quantity_count; quantity++) {
-        if (levelled && quantity < fit->normal_count)
+        if (fit->constant_trace && quantity < fit->normal_count)
             value[quantity] -= trace_rise * (real)(1.0 / (double)fit->normal_count);
         lanes_store(node_values(nodes, block, quantity_component(fit, set, what, quantity)),
                     value[quantity]);
     }
+}
+
+/* Without lines, and one quantity. */
+static void solve_mean(const struct node_fit *fit, const struct node_blocks *nodes, size_t block,
+                       size_t set, enum node_fit_what what)
+{
+    const lanes mass = load_component(nodes, block, set_component(fit, set));
+    real *value = node_values(nodes, block, quantity_component(fit, set, what, 0));
+    lanes_store(value, lanes_keep(mass > 0, lanes_load(value) /
+                                                lanes_select(mass > 0, mass, lanes_splat(1))));
 }
 
 /* Over all materials: damping is of the motion. */
@@ -304,6 +311,10 @@ size_t node_fit_solve(const struct node_fit *fit, const struct node_blocks *node
     size_t fall_backs = 0;
     for (size_t set = 0; set < fit->set_count; set++) {
         struct node_support support;
+        if (fit->trace_only) {
+            solve_mean(fit, nodes, block, set, what);
+            continue;
+        }
         load_support(fit, nodes, block, set, &support);
         solve_set(fit, nodes, block, set, what, &support);
         fall_backs += support.fall_backs;

@@ -383,7 +383,8 @@ double kinematics_advance(struct run *run, const struct particle_block *block,
     const size_t count = (size_t)block->row_count * LANE_COUNT;
     real *e[6];
     strain_arrays(run, block, e);
-    reference_volumes(run, block, scratch, count);
+    if (!run->node_fit.active || run->any_rate) /* fits over nodes take them up again */
+        reference_volumes(run, block, scratch, count);
     if (run->strains_across)
         out_of_plane_increment(run, block, scratch, count, time_step);
     advance_tracked(run, block, scratch, count);

@@ -33,6 +33,12 @@ struct hardening_solid hardening_solid_read(const double *values, size_t first)
     };
 }
 
+bool hardening_needs_spin(const void *constants)
+{
+    const struct hardening_solid *solid = constants;
+    return solid->hardening.kinematic != 0.0;
+}
+
 void hardening_strain_energy(const void *constants, const struct material_batch *batch,
                              real *energy)
 {

@@ -34,7 +34,10 @@ extern const char *const hardening_state_names[HARDENING_STATE_COUNT];
 
 /* Out of checked values, where the constants of hardening stand at `first`. */
 struct hardening_solid hardening_solid_read(const double *values, size_t first);
-/* Entry of struct material for models whose constants begin with a struct hardening_solid: elastic
+/* Entries of struct material for models whose constants begin with a struct hardening_solid.
+ * True: there is kinematic hardening. */
+bool hardening_needs_spin(const void *constants);
+/* Elastic
  * energy and that of the back strain, H/3 |a_kin|^2, which a reversed load recovers. */
 void hardening_strain_energy(const void *constants, const struct material_batch *batch,
                              real *energy);

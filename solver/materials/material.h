@@ -35,7 +35,7 @@ struct material_batch {
                                           strain ln J (trace at small strain) */
     const real *rate[SYM3_COMPONENTS]; /* in: symmetric velocity gradient d [1/s] if needs_rate */
     const real *spin[3];               /* in: (L - L^T)/2, components xy, yz, xz [1/s], if
-                                          needs_spin at finite strain; else NULL */
+                                          needs_spin() at finite strain; else NULL */
     const real *volume_ratio;          /* in: J = V/V0 [1] (1 at small strain) */
     real *stress[SYM3_COMPONENTS];     /* out: Kirchhoff stress (finite) or Cauchy (small) [Pa] */
     real *const *history;              /* in/out: [state_count] arrays of the model's own state */
@@ -63,7 +63,6 @@ struct material {
     bool own_elasticity; /* the table itself holds what the model knows of elasticity (fluids) */
     bool volumetric;     /* stores ln J only, in strain[0]; no deviatoric strain */
     bool needs_rate;     /* wants batch->rate */
-    bool needs_spin;     /* wants batch->spin at finite strain: its history holds a tensor */
     bool plastic;        /* may change the trial strain; writes batch->plastic_strain */
     bool dissipates;     /* writes batch->dissipation: plastic or viscous */
     size_t state_count;  /* history variables per particle; only these are stored */
@@ -79,6 +78,9 @@ struct material {
     double (*wave_speed)(const void *constants);
     /* Longitudinal viscosity limit: dynamic viscosity [Pa s]; 0 for solids. NULL means 0. */
     double (*viscosity)(const void *constants);
+    /* Wants batch->spin at finite strain: its history holds a tensor that is not zero. NULL: never.
+     */
+    bool (*needs_spin)(const void *constants);
     /* Initial history of a particle with elastic strain e[6] (NULL: zeros). */
     void (*initialise)(const void *constants, const double strain[SYM3_COMPONENTS],
                        double *history);

@@ -165,7 +165,7 @@ static bool trial_prepare(struct point *point, double time_step)
             trial->volume_ratio[lane] =
                 (real)point->state.volume_ratio * mat3_determinant(trial->step[lane]);
         valid = point->material->volumetric || trial_elastic_finite(point);
-        if (point->material->needs_spin)
+        if (point->material->needs_spin != NULL && point->material->needs_spin(point->constants))
             trial_spin(trial, time_step);
     }
     for (int lane = 0; point->material->volumetric && lane < POINT_LANES; lane++)

@@ -40,7 +40,8 @@ TALUS_INLINE real log1p_medium(real x)
     return x - y * (x - 2.0 * (z * atanh_tail(z)));
 }
 
-/* |x| <= 0.003 */
+/* |x| <= EXPM1_SMALL */
+#define EXPM1_SMALL ((real)0.003)
 TALUS_INLINE real expm1_small(real x)
 {
     real sum = 1.0 / 720.0;
@@ -69,8 +70,8 @@ TALUS_INLINE real expm1_medium(real x)
 /* out[i] = log(1 + x[i]); NAN where x <= -1. out may be x. */
 void log1p_array(size_t count, const real *x, real *out);
 
-/* out[i] = exp(x[i]) - 1; beyond the range of elementary_exp() the value at its bound. out may be
- * x. */
+/* out[i] = exp(x[i]) - 1, faster where all of them are small; beyond the range of elementary_exp()
+ * the value at its bound. out may be x. */
 void expm1_array(size_t count, const real *x, real *out);
 
 #endif

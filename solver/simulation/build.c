@@ -163,9 +163,10 @@ static enum talus_status build_materials(struct run *run, struct talus_error *er
         run->any_volumetric = run->any_volumetric || material->model->volumetric;
         run->any_tensor = run->any_tensor || !material->model->volumetric;
         run->any_plastic = run->any_plastic || material->model->plastic;
-        run->any_spin = run->any_spin || material->model->needs_spin;
-        run->reloads_gradient =
-            run->reloads_gradient || material->model->needs_rate || material->model->needs_spin;
+        const bool spins =
+            material->model->needs_spin != NULL && material->model->needs_spin(material->constants);
+        run->any_spin = run->any_spin || spins;
+        run->reloads_gradient = run->reloads_gradient || material->model->needs_rate || spins;
         run->any_rate =
             run->any_rate || material->model->needs_rate || run->scene.solver.viscous_damping > 0;
         run->reference_density = fmin(run->reference_density, material->density);
