@@ -83,7 +83,8 @@ static void write_relative(const struct writing *writing, const struct benchmark
         write_line(writing, row, " %s: %zu per cell and axis cost %+.1f %% over %zu", ordering,
                    row->setup.per_axis, cost, first->setup.per_axis);
     if (row->set == BENCHMARK_ANTI_LOCKING)
-        write_line(writing, row, " %s: cell anti-locking costs %+.1f %%", ordering, cost);
+        write_line(writing, row, " %s: %s anti-locking costs %+.1f %%", ordering,
+                   benchmark_control_word(&row->setup), cost);
     if (row->set == BENCHMARK_DOMAIN)
         write_line(writing, row, ": a grid of %g times the body's cells costs %+.1f %%",
                    row->setup.domain_factor, cost);

@@ -211,11 +211,13 @@ static bool run_anti_locking_sets(struct benchmark_suite *suite, const struct be
     for (size_t index = 0; index < benchmark_case_count; index++) {
         const struct benchmark_case *subject = &benchmark_cases[index];
         for (int last = 1; last >= 0 && subject->locks; last--) {
-            struct benchmark_setup setups[2] = {base_setup(subject, plan->particles),
+            struct benchmark_setup setups[3] = {base_setup(subject, plan->particles),
+                                                base_setup(subject, plan->particles),
                                                 base_setup(subject, plan->particles)};
-            setups[0].last = setups[1].last = last == 1;
+            setups[0].last = setups[1].last = setups[2].last = last == 1;
             setups[1].control = "cell";
-            if (!run_set(suite, BENCHMARK_ANTI_LOCKING, setups, 2, &plan->effort, false))
+            setups[2].control = "node";
+            if (!run_set(suite, BENCHMARK_ANTI_LOCKING, setups, 3, &plan->effort, false))
                 return false;
         }
     }

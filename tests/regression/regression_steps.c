@@ -29,8 +29,6 @@ static const struct regression_scene scenes[] = {
     {"fluid_2d_anti_locking", "newtonian_fluid", 2, false, TALUS_CONTROL_CELL,
      TALUS_FIT_VOLUMETRIC},
     {"metal_3d_last", "j2", 3, true, TALUS_CONTROL_NONE, TALUS_FIT_VOLUMETRIC},
-    {"metal_3d_node", "j2", 3, true, TALUS_CONTROL_NODE, TALUS_FIT_VOLUMETRIC},
-    {"metal_3d_node_full", "j2", 3, true, TALUS_CONTROL_NODE, TALUS_FIT_FULL},
     {"mobilised_3d", "matsuoka_nakai", 3, false, TALUS_CONTROL_NONE, TALUS_FIT_VOLUMETRIC},
 };
 
