@@ -18,6 +18,8 @@ METHODS = {
     "HB-FA": ("hybrid", "full"),
     "CB-FACV": ("cell", "full_constant_volume"),  # not in the source
 }
+# Means over nodes spread strain in every step: what they miss depends on the number of steps (README).
+OVER_NODES = ("NB-VA", "HB-FA")
 
 
 def scene(method, hardening):
@@ -89,7 +91,10 @@ for method, result in results.items():
     verification.between(f"{method}: height at 1 ms over the first, rigid-plastic theory 0.676 (energy "
                          "bound 0.607)", result.height, 0.60, 0.73)
     verification.note(f"{method}: radius of the foot over the first", result.radius, "compared below")
-    verification.below(f"{method}: change of volume", abs(result.growth), 0.01)
+    if FULL and method in OVER_NODES:
+        verification.deviation(f"{method}: change of volume", abs(result.growth), 0.01, 0.04)
+    else:
+        verification.below(f"{method}: change of volume", abs(result.growth), 0.01)
     verification.relative(f"{method}: impulse of the wall against the change of momentum [N s]",
                           result.impulse, result.change, 1e-9)
     verification.below(f"{method}: momentum at 1 ms over that of the impact", abs(result.momentum_left),
@@ -104,15 +109,21 @@ for method, result in results.items():
 
 reference = results["CB-VA"]
 calm = [results[method].height for method in ("STD", "CB-VA", "NB-VA", "HB-FA", "CB-FACV")]
-verification.below("spread of the heights but for CB-FA", max(calm) / min(calm) - 1, 0.01)
+if FULL:
+    verification.deviation("spread of the heights but for CB-FA", max(calm) / min(calm) - 1, 0.01, 0.02)
+else:
+    verification.below("spread of the heights but for CB-FA", max(calm) / min(calm) - 1, 0.01)
 verification.deviation("CB-FA: height against CB-VA", relative(results["CB-FA"].height, reference.height),
                        0.01, 0.02)
 verification.above("STD: radius below that of CB-VA, relative",
                    1 - results["STD"].radius / reference.radius, 0.01)
 verification.below("CB-FACV: radius against CB-VA", relative(results["CB-FACV"].radius, reference.radius),
                    0.01)
-verification.deviation("NB-VA: radius against CB-VA", relative(results["NB-VA"].radius, reference.radius),
-                       0.01, 0.05)
+nodes = relative(results["NB-VA"].radius, reference.radius)
+if FULL:
+    verification.below("NB-VA: radius against CB-VA", nodes, 0.01)
+else:
+    verification.deviation("NB-VA: radius against CB-VA", nodes, 0.01, 0.05)
 verification.deviation("CB-FA: radius against CB-VA", relative(results["CB-FA"].radius, reference.radius),
                        0.01, 0.25)
 
@@ -122,6 +133,9 @@ heights = [result.height for result in hard.values()]
 verification.below("hardening 200 MPa: spread of the heights of all five methods",
                    max(heights) / min(heights) - 1, 0.01)
 verification.above("hardening 200 MPa: least height, energy bound", min(heights), 0.722)
-verification.below("hardening 200 MPa: radius of NB-VA against CB-VA",
-                   relative(hard["NB-VA"].radius, hard["CB-VA"].radius), 0.01)
+nodes = relative(hard["NB-VA"].radius, hard["CB-VA"].radius)
+if FULL:
+    verification.deviation("hardening 200 MPa: radius of NB-VA against CB-VA", nodes, 0.01, 0.05)
+else:
+    verification.below("hardening 200 MPa: radius of NB-VA against CB-VA", nodes, 0.01)
 verification.finish()
