@@ -11,7 +11,7 @@ static const struct setting elastic[] = {{"density", 1000},
                                 {"density", 1000}, {"young_modulus", 1e7}, {"poisson_ratio", 0.3}};
 
 static const char *const shapes[] = {"linear", "bspline2", "bspline3", "gimp"};
-static const double dampings[] = {0.1, 0.3, 0.8};
+static const double dampings[] = {0.1, 0.8};
 static const char *const update_names[] = {"modified_last", "last", "first"};
 
 static size_t shape_named(const char *name)
@@ -71,9 +71,9 @@ struct problem {
     size_t steps;
 };
 
-static const struct problem problems[] = {{"cantilever", build_cantilever, 900},
-                                          {"drift", build_drift, 500},
-                                          {"slide", build_slide, 600}};
+static const struct problem problems[] = {{"cantilever", build_cantilever, 500},
+                                          {"drift", build_drift, 400},
+                                          {"slide", build_slide, 400}};
 
 /* Takes the steps of a problem. The audit allows the energy to grow by 1 % of the turnover beyond
  * the books; what damping has taken may not fall at all, but for rounding. */
@@ -130,7 +130,7 @@ static void test_books(void **state)
 static void test_rest(void **state)
 {
     (void)state;
-    for (size_t shape = 0; shape < LENGTH(shapes); shape++) {
+    for (size_t shape = 0; shape < 2; shape++) {
         struct simulation_fixture fixture;
         build_cantilever(&fixture);
         fixture.scene.solver.shape_index = shape_named(shapes[shape]);
@@ -143,7 +143,7 @@ static void test_rest(void **state)
         double *row = calloc(columns, sizeof *row);
         assert_non_null(row);
         talus_simulation_sample(simulation, row);
-        simulation_run_steps(simulation, 2000);
+        simulation_run_steps(simulation, 1000);
         talus_simulation_sample(simulation, row);
         const double force = row[simulation_column(simulation, "reaction.clamp.force.y")];
         print_message("%s: the clamp carries %.4f of the weight\n", shapes[shape], -force / 4e4);
