@@ -7,8 +7,9 @@
 Methods are the shapes alone: flip, modified_last, no anti-locking. The regret of a shape in a problem
 is its error over the least error of any shape at equal processor time, the geometric mean over the
 times that all candidates span (error log-log between resolutions); the default is the candidate whose
-worst regret is least. A candidate has come to its end in every run of every problem. --floor counts
-errors below ERROR as ERROR, to see whether digits that no scene needs decide.
+worst regret is least. A candidate has come to its end in every run of every problem, and its cheapest
+takes no longer than the dearest of every other shape that has: else there is no equal time. --floor
+counts errors below ERROR as ERROR, to see whether digits that no scene needs decide.
 """
 import argparse
 import csv
@@ -36,6 +37,15 @@ def read(path):
         for points in methods.values():
             points.sort()
     return runs, failed
+
+
+def too_dear(runs, shapes):
+    """{shape: problem} of the shapes whose cheapest run begins where another's dearest has ended."""
+    found = {}
+    for problem, methods in runs.items():
+        ends = min(methods[shape][-1][0] for shape in shapes)
+        found.update({shape: problem for shape in shapes if methods[shape][0][0] > ends})
+    return found
 
 
 def error_at(points, time):
@@ -71,6 +81,10 @@ def main():
     candidates = [shape for shape in shapes if shape not in failed]
     for shape in sorted(failed):
         print(f"{shape}: no candidate, fails in {', '.join(failed[shape])}")
+    dear = too_dear(runs, candidates)
+    for shape, problem in sorted(dear.items()):
+        print(f"{shape}: no candidate, its cheapest run takes longer than others' dearest in {problem}")
+    candidates = [shape for shape in candidates if shape not in dear]
     floor = math.log(arguments.floor) if arguments.floor > 0 else -math.inf
     worst = {shape: 0.0 for shape in candidates}
     print(f"{'problem':28}{'times [s]':>14} " + "".join(f"{shape:>13}" for shape in candidates))
