@@ -7,6 +7,7 @@
 
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 /* The trials of one search, in the order of their rows. */
 struct search {
@@ -78,6 +79,9 @@ static bool trial_met(struct bisection *bisection, const struct study_row *row)
         row->state == ROW_SUCCEEDED
             ? condition_evaluate(&bisection->plan.bisect.condition, metrics, &missing)
             : CONDITION_NOT_MET;
+    if (row->reason != NULL && strcmp(row->reason, "invalid") == 0)
+        (void)snprintf(bisection->detail, sizeof bisection->detail, "row %lld: %s",
+                       (long long)row->number, row->detail == NULL ? "" : row->detail);
     if (row->state == ROW_CANCELLED)
         (void)snprintf(bisection->detail, sizeof bisection->detail,
                        "the job of row %lld was cancelled", (long long)row->number);

@@ -2,8 +2,8 @@
 """The fake worker's `helper`: answers what the daemon asks about scenes and pictures, one JSON line
 in, one out. Files in SIDE switch misbehaviour on: helper-exit, helper-die, helper-hang,
 helper-half, helper-nonsense, helper-endless, helper-render-hang. A scene titled
-`fake {"helper": "die"}` kills the helper that reads it, {"helper": "hang"} holds it, one titled
-{"disk_bytes": N} is forecast to take so many."""
+`fake {"helper": "die"}` kills the helper that reads it, {"helper": "hang"} holds it, {"disk_bytes": N}
+is forecast to take so many, {"refuse": [A, B]} is invalid with a duration between."""
 import hashlib
 import json
 import os
@@ -46,6 +46,9 @@ def check(question, side):
                            "code": "unknown_key", "detail": f"no such key: {key}"})
     if isinstance(scene.get("duration"), (int, float)) and scene["duration"] <= 0:
         errors.append({"pointer": "/duration", "code": "range", "detail": "not above 0"})
+    low, high = directive(scene).get("refuse", (0, 0))
+    if isinstance(scene.get("duration"), (int, float)) and low < scene["duration"] < high:
+        errors.append({"pointer": "/duration", "code": "range", "detail": "in the gap"})
     if errors:
         return {"ok": False, "errors": errors}
     effective = dict(scene, solver={"kind": "explicit", "time_step": "auto"})
@@ -76,7 +79,9 @@ def refuse(pointer, code, detail):
 
 
 def chart(question):
-    """Says what it was asked to draw."""
+    """Says what it was asked to draw; a study called "no chart" gets none."""
+    if question["title"] == "no chart":
+        return refuse("/chart", "range", "nothing to draw")
     if not question["rows"][0]["metrics"]:
         return refuse("/rows", "required", "no metrics")
     shown = json.dumps({key: question[key] for key in ("chart", "kind", "title", "units")}, sort_keys=True)

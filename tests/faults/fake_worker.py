@@ -29,6 +29,7 @@ DIRECTIVE = {
     "fail": None,          # {"reason": ..., "exit": ..., "row": R}: ends with a failed line; with
                            # "above": D only where the scene's duration is above D
     "exit": None,          # exit code without any last line
+    "refuse": None,        # what the helper refuses (fake_helper.py)
     "hang": False,         # stays for ever at the end, ignores SIGTERM
     "ignore_term": False,  # ignores SIGTERM but goes on
     "die_of_term": False,  # SIGTERM kills it at once, without a last line

@@ -159,6 +159,15 @@ class Designs(StudyTest):
             self.assertEqual(len(set(tried)), len(tried), tried)
         self.assertEqual(len(rows), study["progress"]["rows_expected"])
 
+    def test_a_scene_that_is_invalid_between_the_ends(self):
+        """Both ends are valid, so the study is taken; the gap must not pass for the edge."""
+        study, rows = self.run_study(study_body(
+            self.bisection(), scene=study_scene({"refuse": [4.5, 5.5]})), "failed")
+        self.assertEqual([row["state"] for row in rows], ["succeeded", "succeeded", "failed"])
+        self.assertEqual(rows[2]["reason"], "invalid")
+        self.assertIsNone(study["result"])
+        self.assertIn("row 2: the scene is refused: /duration: in the gap", study["detail"])
+
     def test_a_failed_job_does_not_meet_a_condition(self):
         scene = study_scene({"fail": {"reason": "unstable", "exit": 11, "row": 1, "above": 6}})
         study, rows = self.run_study(study_body(
