@@ -8,6 +8,7 @@
 #include <stdio.h>
 
 const char *const conditional_headers[] = {"ETag", NULL};
+const unsigned int conditional_problems[] = {MHD_HTTP_PRECONDITION_FAILED, 0};
 
 void conditional_etag(const char *data, size_t length, char etag[CONDITIONAL_ETAG_SIZE])
 {

@@ -14,6 +14,8 @@ extern const char *const conditional_headers[];
         .status = 304, .headers = conditional_headers, .meaning = "unchanged"                      \
     }
 
+extern const unsigned int conditional_problems[]; /* what it can be answered besides */
+
 /* A tag of bytes that decide an answer; "" if it cannot be made. */
 void conditional_etag(const char *data, size_t length, char etag[CONDITIONAL_ETAG_SIZE]);
 /* Answers 412 or 304 where If-Match or If-None-Match asks for that. False: the answer is due, and

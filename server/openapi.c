@@ -123,16 +123,48 @@ static void add_problems(json_t *responses, const struct operation *operation, b
         add_problem(responses, operation->problems[index], head);
 }
 
-/* The part of the interface that a path belongs to: "jobs" of v1/jobs/..., else "service". */
+/* The parts of the interface, in alphabetical order; what begins as no other is the service's. */
+static const struct {
+    const char *name, *beginning, *meaning;
+} tags[] = {
+    {"jobs", "v1/jobs", "one run of one scene, and what it leaves behind"},
+    {"service", "", "the daemon itself, and what needs no job"},
+    {"studies", "v1/studies", "many runs of one scene with changes"},
+};
+enum { TAG_COUNT = sizeof tags / sizeof tags[0], TAG_SERVICE = 1 };
+
 static json_t *tag_json(const char *path)
 {
-    static const char *const tags[] = {"jobs", "studies"};
-    for (size_t index = 0; index < sizeof tags / sizeof tags[0]; index++) {
-        if (strncmp(path, "v1/", 3) == 0 &&
-            strncmp(path + 3, tags[index], strlen(tags[index])) == 0)
-            return json_string(tags[index]);
+    size_t found = TAG_SERVICE;
+    for (size_t index = 0; index < TAG_COUNT; index++) {
+        if (index != TAG_SERVICE &&
+            strncmp(path, tags[index].beginning, strlen(tags[index].beginning)) == 0)
+            found = index;
     }
-    return json_string("service");
+    return json_string(tags[found].name);
+}
+
+static json_t *tags_json(void)
+{
+    json_t *list = json_array();
+    for (size_t index = 0; index < TAG_COUNT; index++)
+        (void)json_array_append_new(list, json_pack("{s:s, s:s}", "name", tags[index].name,
+                                                    "description", tags[index].meaning));
+    return list;
+}
+
+/* Who may call it. */
+static const char *role_meaning(const struct route *route)
+{
+    static const char *const meanings[] = {
+        [ROLE_ANYONE] = "Needs no token, wherever the daemon listens.",
+        [ROLE_READ] = "Where tokens are asked for: for every token.",
+        [ROLE_SUBMIT] = "Where tokens are asked for: for the roles submit and admin.",
+        [ROLE_ADMIN] = "Where tokens are asked for: for the role admin.",
+    };
+    if (route->role == ROLE_SUBMIT && strchr(route->path, '*') != NULL)
+        return "Where tokens are asked for: for the one that submitted it, and the role admin.";
+    return meanings[route->role];
 }
 
 static json_t *operation_json(const struct route *route, bool head, json_t *named)
@@ -144,9 +176,10 @@ static json_t *operation_json(const struct route *route, bool head, json_t *name
     add_parameters(parameters, operation->headers, "header", named);
     add_responses(responses, operation, head, named);
     add_problems(responses, operation, head);
-    json_t *object = json_pack("{s:s+, s:s+, s:[o]}", "operationId", head ? "head_" : "",
-                               route->name, "summary", operation->summary,
-                               head ? ", without its body" : "", "tags", tag_json(route->path));
+    json_t *object =
+        json_pack("{s:s+, s:s+, s:s, s:[o]}", "operationId", head ? "head_" : "", route->name,
+                  "summary", operation->summary, head ? ", without its body" : "", "description",
+                  role_meaning(route), "tags", tag_json(route->path));
     if (route->role == ROLE_ANYONE)
         put(object, "security", json_array());
     if (json_array_size(parameters) > 0)
@@ -195,14 +228,15 @@ json_t *openapi_document(const json_t *scene_schema)
     (void)json_object_del(scene, "$schema"); /* the document's own dialect is the same */
     put(named, "Scene", scene);
     return json_pack(
-        "{s:s, s:{s:s, s:s, s:s, s:{s:s, s:s}}, s:[{s:s}], s:[{}, {s:[]}], s:o, "
+        "{s:s, s:{s:s, s:s, s:s, s:{s:s, s:s}}, s:[{s:s}], s:o, s:[{}, {s:[]}], s:o, "
         "s:{s:o, s:{s:{s:s, s:{s:{s:o}}, s:{s:o}}, s:{s:s}}, s:{s:{s:s, s:s}}}}",
         "openapi", "3.1.0", "info", "title", "Talus", "version", TALUS_VERSION, "description",
         "A service for the Material Point Method. SI units; angles in degrees.", "license", "name",
-        "Apache-2.0", "url", license, "servers", "url", "/", "security", "token", "paths", paths,
-        "components", "schemas", named, "responses", "Problem", "description",
-        "what is wrong (RFC 9457), all mistakes at once", "content", "application/problem+json",
-        "schema", problem, "headers", "Retry-After", header_json("Retry-After"),
-        "ProblemWithoutBody", "description", "what is wrong, in the status", "securitySchemes",
-        "token", "type", "http", "scheme", "bearer");
+        "Apache-2.0", "url", license, "servers", "url", "/", "tags", tags_json(), "security",
+        "token", "paths", paths, "components", "schemas", named, "responses", "Problem",
+        "description", "what is wrong (RFC 9457), all mistakes at once", "content",
+        "application/problem+json", "schema", problem, "headers", "Retry-After",
+        header_json("Retry-After"), "ProblemWithoutBody", "description",
+        "what is wrong, in the status", "securitySchemes", "token", "type", "http", "scheme",
+        "bearer");
 }

@@ -188,7 +188,8 @@ void reply_error(struct reply *reply, const char *instance, const struct talus_e
         status = MHD_HTTP_UNPROCESSABLE_CONTENT;
     else if (strcmp(error->code, "revision") == 0)
         status = MHD_HTTP_PRECONDITION_FAILED;
-    else if (strcmp(error->code, "helper") == 0 || strcmp(error->code, "busy") == 0)
+    else if (strcmp(error->code, "helper") == 0 || strcmp(error->code, "late") == 0 ||
+             strcmp(error->code, "busy") == 0)
         status = MHD_HTTP_SERVICE_UNAVAILABLE;
     reply_problem(reply, status, error->code, instance, NULL, "%s", error->text);
 }

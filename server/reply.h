@@ -48,7 +48,8 @@ void reply_problem(struct reply *reply, unsigned int status, const char *code, c
 void reply_problem_with(struct reply *reply, unsigned int status, const char *code,
                         const char *instance, json_t *members, const char *format, ...)
     __attribute__((format(printf, 6, 7)));
-/* What went wrong inside: "not_found" is 404, "state" 409, anything else 500. */
+/* What went wrong inside: "not_found" is 404, "state" 409, no answer
+ * of a helper 503, ..., anything else 500. */
 void reply_error(struct reply *reply, const char *instance, const struct talus_error *error);
 void reply_release(struct reply *reply);
 

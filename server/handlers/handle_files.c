@@ -69,6 +69,7 @@ const struct operation operation_file_list = {
                                             .meaning = "all files"},
                                            CONDITIONAL_UNCHANGED,
                                            RESPONSE_END},
+    .problems = conditional_problems,
 };
 
 enum handled handle_file_list(struct request *request)

@@ -170,6 +170,7 @@ const struct operation operation_frame_slice = {
                                             .meaning = "header and arrays"},
                                            CONDITIONAL_UNCHANGED,
                                            RESPONSE_END},
+    .problems = conditional_problems,
 };
 
 enum handled handle_frame_slice(struct request *request)

@@ -42,6 +42,7 @@ const struct operation operation_frame_list = {
                                             .meaning = "all frames, in the order of time"},
                                            CONDITIONAL_UNCHANGED,
                                            RESPONSE_END},
+    .problems = conditional_problems,
 };
 
 enum handled handle_frame_list(struct request *request)
@@ -184,6 +185,7 @@ const struct operation operation_frame_picture = {
                                             .meaning = "the picture"},
                                            CONDITIONAL_UNCHANGED,
                                            RESPONSE_END},
+    .problems = conditional_problems,
 };
 
 enum handled handle_frame_picture(struct request *request)

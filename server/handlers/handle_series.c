@@ -133,6 +133,7 @@ const struct operation operation_series_list = {
                                             .meaning = "all histories"},
                                            CONDITIONAL_UNCHANGED,
                                            RESPONSE_END},
+    .problems = conditional_problems,
 };
 
 enum handled handle_series_list(struct request *request)
@@ -225,6 +226,7 @@ const struct operation operation_series = {
             {.status = 200, .type = "text/csv", .headers = series_headers, .meaning = ""},
             CONDITIONAL_UNCHANGED,
             RESPONSE_END},
+    .problems = conditional_problems,
 };
 
 enum handled handle_series(struct request *request)

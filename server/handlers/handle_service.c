@@ -130,6 +130,7 @@ const struct operation operation_scene_schema = {
                                             .meaning = "the schema"},
                                            CONDITIONAL_UNCHANGED,
                                            RESPONSE_END},
+    .problems = conditional_problems,
 };
 
 enum handled handle_scene_schema(struct request *request)

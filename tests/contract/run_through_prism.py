@@ -1,51 +1,72 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Runs a protocol test with its requests going through prism:
-    run_through_prism.py DOCUMENT NOTES TEST.py
-A violation in an answer fails; so does one in a request that the daemon did not refuse."""
+"""Runs protocol tests, one after the other, with their requests going through prism:
+    run_through_prism.py DOCUMENT NOTES TEST.py[:CLASS,...]...
+A violation in an answer fails, and so do a status or a path that the document does not have and a
+violation in a request that the daemon did not refuse."""
 import json
 import os
 import re
 import subprocess
 import sys
+import time
 
 HERE = os.path.dirname(os.path.abspath(__file__))
 
 
+def is_fault(entry, violation):
+    """Statuses of no operation are but a warning to prism."""
+    if violation["location"][0] == "response":
+        return (violation["severity"] == "Error"
+                or violation["message"].startswith("Unable to match the returned status"))
+    return violation["severity"] == "Error" and entry["status"] < 400
+
+
 def faults(notes):
-    """What is wrong, one line each, and how many requests went through."""
-    found, through = [], 0
+    """What is wrong, one line each."""
+    found = set()
     for entry in notes:
-        through += entry["through"]
-        text = entry["violations"] or "[]"
-        if not text.startswith("["):  # prism cuts long lists
-            part = "response" if '"location":["response"' in text else "request"
-            text = json.dumps([{"location": [part], "severity": "Error", "message": text[:200]}])
-        for violation in json.loads(text):
-            place = ".".join(violation["location"])
-            of_answer = violation["location"][0] == "response"
-            if violation["severity"] == "Error" and (of_answer or entry["status"] < 400):
-                path = re.sub(r"[0-9a-hjkmnp-tv-z]{26}", "ID", entry["path"])
-                found.append(f"{entry['method']} {path} -> {entry['status']}: {place}: "
-                             f"{violation['message']}")
-    return found, through
+        path = re.sub(r"[0-9a-hjkmnp-tv-z]{26}", "ID", entry["path"])
+        told = f"{entry['method']} {path[:200]} -> {entry['status']}"
+        # The only answer that no operation makes and that is no refusal is that to a page's browser.
+        if not entry["routed"] and entry["status"] < 400 and entry["method"] != "OPTIONS":
+            found.add(f"{told}: the document has no such operation")
+        for violation in entry["violations"]:
+            if is_fault(entry, violation):
+                found.add(f"{told}: {'.'.join(violation['location'])}: {violation['message']}")
+    return sorted(found)
 
 
-def main(document, notes, test):
+def run(test, environment):
+    file, _, names = test.partition(":")
+    began = time.monotonic()
+    code = subprocess.run([sys.executable, file, *filter(None, names.split(","))], env=environment,
+                          check=False).returncode
+    print(f"{os.path.basename(file)} ended with {code} after {time.monotonic() - began:.1f} s",
+          flush=True)
+    return code
+
+
+def main(document, notes, *tests):
     if os.path.exists(notes):
         os.unlink(notes)
     proxy = subprocess.Popen(["node", os.path.join(HERE, "prism_proxy.mjs"), document],
                              stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True)
     control = proxy.stdout.readline().strip()
-    environment = dict(os.environ, TALUS_CONTRACT_CONTROL=control, TALUS_CONTRACT_NOTES=notes)
-    code = subprocess.run([sys.executable, test], env=environment, check=False).returncode
+    protocol = os.path.join(os.path.dirname(HERE), "protocol")
+    environment = dict(os.environ, TALUS_CONTRACT_CONTROL=control, TALUS_CONTRACT_NOTES=notes,
+                       PYTHONPATH=protocol)
+    failed = [test for test in tests if run(test, environment)]
     proxy.stdin.close()
     proxy.wait()
     with open(notes, encoding="utf-8") as file:
-        found, through = faults([json.loads(line) for line in file])
-    print(f"{through} requests went through prism, {len(found)} violations")
-    for fault in sorted(set(found)):
+        entries = [json.loads(line) for line in file]
+    found = faults(entries)
+    through = sum(entry["through"] for entry in entries)
+    print(f"{through} requests went through prism, {len(entries) - through} answers beside it, "
+          f"{len(found)} violations")
+    for fault in found:
         print(fault)
-    return 1 if code or found or not through else 0
+    return 1 if failed or found or not through else 0
 
 
 if __name__ == "__main__":

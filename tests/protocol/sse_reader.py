@@ -4,7 +4,7 @@ import json
 import socket
 import time
 
-from talus_harness import PATIENCE
+from talus_harness import PATIENCE, contract_proxy
 
 
 class Event:
@@ -31,6 +31,7 @@ class Stream:
     def __init__(self, port, path, last_id=None, receive_buffer=None, timeout=30.0, token=None,
                  host=None):
         self.comments = []
+        self.path = path
         self.ended = False
         self.socket = socket.socket()
         if receive_buffer:
@@ -64,6 +65,8 @@ class Stream:
         lines = head.decode("latin-1").split("\r\n")
         self.status = int(lines[0].split()[1])
         self.headers = {k.lower(): v.strip() for k, v in (x.split(":", 1) for x in lines[1:])}
+        if self.headers.get("content-type", "").startswith("text/event-stream"):
+            contract_proxy.examine("GET", self.path, self.status, self.headers, b"(a stream)")
         return self
 
     def _receive(self):

@@ -114,6 +114,7 @@ class Client:
                 self.close()
                 raise
         reply = Reply(answer.status, {k.lower(): v for k, v in answer.getheaders()}, data)
+        contract_proxy.examine(method, path, reply.status, reply.headers, data)
         if reply.headers.get("connection", "").lower() == "close":
             self.close()
         return reply

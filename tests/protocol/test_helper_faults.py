@@ -93,7 +93,7 @@ class HelperFaults(DaemonTest):
             self.assertEqual(self.client.get("/v1/version").status, 200)
             self.assertLess(time.monotonic() - begin, 1 * PATIENCE)
             thread.join()
-            self.assertIn(replies[0].status, (500, 502, 503, 504))
+            self.assertEqual(replies[0].status, 503)
         finally:
             self.daemon.switch_off("helper-render-hang")
         self.assertEqual(self.client.get(f"/v1/jobs/{job}/frames/0.png?width=333").status, 200)
