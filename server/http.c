@@ -97,7 +97,8 @@ static enum MHD_Result reply_queue(struct request *request)
     if (reply->response == NULL)
         return MHD_NO;
     origin_reply(request);
-    if (reply->close)
+    /* To HEAD libmicrohttpd 0.9.75 may send the last chunk of a stream that it does not send. */
+    if (reply->close || (reply->stream && strcmp(request->method, "HEAD") == 0))
         reply_header(reply, MHD_HTTP_HEADER_CONNECTION, "close");
     if (reply->response == NULL)
         return MHD_NO;

@@ -98,6 +98,7 @@ void reply_stream(struct reply *reply, struct MHD_Response *response)
     reply_begin(reply, MHD_HTTP_OK, response, "text/event-stream");
     reply_header(reply, MHD_HTTP_HEADER_CACHE_CONTROL, "no-store");
     reply_header(reply, "X-Accel-Buffering", "no");
+    reply->stream = true;
 }
 
 static const char *problem_title(unsigned int status)

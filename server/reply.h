@@ -17,7 +17,8 @@ enum { PROBLEM_ERROR_MAX = 50 };
 struct reply {
     unsigned int status;
     struct MHD_Response *response;
-    bool close; /* the connection must not be used again */
+    bool close;  /* the connection must not be used again */
+    bool stream; /* its length is not known */
 };
 
 /* Each of these makes the whole reply; out of memory leaves `response` NULL, which the HTTP layer
