@@ -13,11 +13,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-static enum talus_status out_of_memory(struct talus_error *error)
-{
-    return talus_error_set(error, TALUS_MEMORY, "memory", "", "out of memory");
-}
-
 /* Jobs in an order that a search can use. */
 struct recovery_job {
     char id[IDENTIFIER_LENGTH + 1];
@@ -56,7 +51,7 @@ list_read(struct service *service,
 {
     memset(list, 0, sizeof *list);
     enum talus_status status = ask(service->store, list_note, list, error);
-    return status == TALUS_OK && list->failed ? out_of_memory(error) : status;
+    return status == TALUS_OK && list->failed ? talus_error_memory(error) : status;
 }
 
 static void list_release(struct recovery_list *list)
@@ -82,7 +77,7 @@ static enum talus_status states_complete(struct service *service, struct talus_e
     for (size_t index = 0; index < list.count && status == TALUS_OK; index++) {
         char *folder = jobs_folder(service, list.jobs[index].id);
         if (folder == NULL)
-            status = out_of_memory(error);
+            status = talus_error_memory(error);
         else if (event_log_last_number(folder) < list.jobs[index].number)
             jobs_states_write(service, list.jobs[index].id, false);
         free(folder);
@@ -103,7 +98,7 @@ static enum talus_status orphans_remove(struct service *service, const struct re
     char *path = folder_join(service->state, "jobs");
     DIR *folder = path == NULL ? NULL : opendir(path);
     const struct dirent *entry;
-    enum talus_status status = folder == NULL ? out_of_memory(error) : TALUS_OK;
+    enum talus_status status = folder == NULL ? talus_error_memory(error) : TALUS_OK;
     while (folder != NULL && status == TALUS_OK && (entry = readdir(folder)) != NULL) {
         struct recovery_job job;
         if (!identifier_valid(entry->d_name))
@@ -113,7 +108,7 @@ static enum talus_status orphans_remove(struct service *service, const struct re
             bsearch(&job, known->jobs, known->count, sizeof job, id_compare) != NULL)
             continue;
         char *orphan = jobs_folder(service, job.id);
-        status = orphan == NULL ? out_of_memory(error) : folder_remove(orphan, error);
+        status = orphan == NULL ? talus_error_memory(error) : folder_remove(orphan, error);
         free(orphan);
     }
     if (folder != NULL)

@@ -8,7 +8,7 @@ const char store_row_select[] = "SELECT id"
 #include "job_columns.def"
     ;
 static const char replace_sql[] = "INSERT INTO jobs (id"
-#include "job_columns.def"
+#include "job_columns.def" /* NOLINT(readability-duplicate-include) */
                                   ") VALUES (?"
 #undef JOB_TEXT
 #define JOB_TEXT(name) ", ?"
