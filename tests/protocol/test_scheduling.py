@@ -24,11 +24,12 @@ class OneAtATime(DaemonTest):
     workers = 1
 
     def test_priority_then_age(self):
-        busy = self.client.submit({"seconds": 0.8})["id"]
+        busy = self.client.submit({"seconds": 60})["id"]
         wait_for(lambda: self.daemon.started(busy), 10, "started")
         order = []
         for priority in (0, -5, 7, 0, 100, -100, 7):
             order.append((priority, self.client.submit(priority=priority)["id"]))
+        self.client.post(f"/v1/jobs/{busy}/cancel")
         for _, job in order:
             self.client.finish(job)
         expected = [job for _, job in sorted(order, key=lambda pair: -pair[0])]

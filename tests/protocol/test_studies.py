@@ -178,6 +178,7 @@ class Designs(StudyTest):
 
 
 class Life(StudyTest):
+    config = {"stop_seconds": 30}  # a stop takes the time that the fake worker wants
     def test_a_failed_job_is_a_row(self):
         scene = study_scene({"fail": {"reason": "unstable", "exit": 11, "row": 1, "above": 2.5}})
         study, rows = self.run_study(study_body(GRID, scene=scene))
@@ -234,7 +235,7 @@ class Life(StudyTest):
         self.assert_problem(self.client.get("/v1/studies?cursor=x"), 422)
 
     def test_cancel(self):
-        body = study_body(GRID, scene=study_scene({"seconds": 30, "term_delay": 2}))
+        body = study_body(GRID, scene=study_scene({"seconds": 30, "term_delay": 5}))
         study = self.submit(body)
         wait_for(lambda: self.study(study["id"])["counts"]["running"] == 2, what="two running jobs")
         # All other rows are jobs already: nothing but the wish itself tells the driver.
