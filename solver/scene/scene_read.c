@@ -175,6 +175,7 @@ enum talus_status scene_read(const json_t *root, struct talus_scene *scene, json
                       "objects and arrays are nested more than %d deep", DEPTH_MAX);
     else
         scene_fields_read(&reader, NULL, scene_root_fields, root, scene, *effective);
+    scene_solver_choose_shape(&reader, root, *effective);
     scene_check(&reader);
     if (issues->count == 0 && !reader.out_of_memory && *effective != NULL)
         return TALUS_OK;

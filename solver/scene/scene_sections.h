@@ -23,6 +23,11 @@ extern const struct scene_field scene_probe_fields[];
 extern const struct scene_field scene_reference_fields[];
 extern const struct scene_field scene_output_fields[];
 
+/* A scene with averages against locking that names no shape takes `linear`, what they were made
+ * for; `root` is the document, `effective` the scene with all defaults (docs/methods.md, "The
+ * default"). */
+void scene_solver_choose_shape(struct scene_reader *reader, const json_t *root, json_t *effective);
+
 /* The dimensions with so many axes; new array. */
 json_t *scene_dimensions_of(size_t axis_count);
 

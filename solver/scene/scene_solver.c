@@ -14,12 +14,13 @@ static const char *const shape_words[] = {
 #undef SHAPE
     NULL,
 };
-/* What most scenes lose least by (docs/methods.md, "The default"). */
+/* What most scenes lose least by; averages make it too soft (docs/methods.md, "The default"). */
 enum {
 #define SHAPE(symbol) SHAPE_INDEX_##symbol,
 #include "shapes/shapes.def"
 #undef SHAPE
-    SHAPE_INDEX_DEFAULT = SHAPE_INDEX_bspline2
+    SHAPE_INDEX_DEFAULT = SHAPE_INDEX_bspline2,
+    SHAPE_INDEX_BESIDE_ANTI_LOCKING = SHAPE_INDEX_linear
 };
 static const char *const gimp_scaling_words[] = {"volume", "stretch", NULL};
 static const char *const transfer_words[] = {
@@ -210,7 +211,7 @@ const struct scene_field scene_solver_fields[] = {
      .storage = SCENE_STORE_SIZE,
      .default_value = SHAPE_INDEX_DEFAULT,
      .offset = AT(shape_index),
-     .meaning = "shape functions"},
+     .meaning = "shape functions; beside anti_locking the default is linear"},
     {.key = "gimp_scaling",
      .kind = SCENE_CHOICE,
      .unit = "1",
@@ -301,3 +302,14 @@ const struct scene_field scene_solver_fields[] = {
     {.key = "element", .unsupported = true},
     {.key = NULL},
 };
+
+void scene_solver_choose_shape(struct scene_reader *reader, const json_t *root, json_t *effective)
+{
+    struct talus_solver_options *solver = &reader->scene->solver;
+    if (solver->anti_locking == TALUS_CONTROL_NONE ||
+        json_object_get(json_object_get(root, "solver"), "shape") != NULL)
+        return;
+    solver->shape_index = SHAPE_INDEX_BESIDE_ANTI_LOCKING;
+    scene_put(reader, json_object_get(effective, "solver"), "shape",
+              json_string(shape_words[SHAPE_INDEX_BESIDE_ANTI_LOCKING]));
+}

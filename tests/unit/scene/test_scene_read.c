@@ -98,6 +98,28 @@ static void defaults_are_the_documented_ones(void **state)
     fixture_result_release(&result);
 }
 
+/* The shape of a scene with this solver; both the solver's and the effective scene's. */
+static void assert_shape(const char *solver, const char *name)
+{
+    json_t *scene = fixture_scene(BASE_SOLID);
+    assert_int_equal(json_object_set_new(scene, "solver", json_loads(solver, 0, NULL)), 0);
+    struct fixture_result result = fixture_read_valid(scene);
+    assert_string_equal(shape_table[result.scene.solver.shape_index]->name, name);
+    const json_t *effective = json_object_get(result.effective, "solver");
+    assert_string_equal(json_string_value(json_object_get(effective, "shape")), name);
+    fixture_result_release(&result);
+}
+
+static void averages_bring_linear_shapes_along(void **state)
+{
+    (void)state;
+    assert_shape("{}", "bspline2");
+    assert_shape("{\"anti_locking\": {\"control\": \"none\"}}", "bspline2");
+    assert_shape("{\"anti_locking\": {\"control\": \"cell\"}}", "linear");
+    assert_shape("{\"anti_locking\": {\"control\": \"node\"}}", "linear");
+    assert_shape("{\"anti_locking\": {\"control\": \"cell\"}, \"shape\": \"gimp\"}", "gimp");
+}
+
 static void faces_have_axes_and_sizes(void **state)
 {
     (void)state;
@@ -394,6 +416,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(values_arrive),
         cmocka_unit_test(defaults_are_the_documented_ones),
+        cmocka_unit_test(averages_bring_linear_shapes_along),
         cmocka_unit_test(faces_have_axes_and_sizes),
         cmocka_unit_test(faces_in_a_plane_are_lines),
         cmocka_unit_test(boxes_have_faces_of_their_own),
