@@ -6,66 +6,34 @@ end; a study that nobody cancelled or deleted ends with all of its rows; one tha
 with its jobs and their folders; one that is cancelled ends so, unless it had ended before.
 
 TALUS_KILLS: how many kills (12; with TALUS_FULL=1 200). TALUS_SEED: repeats a run."""
-import http.client
 import os
 import random
 import sys
-import threading
 import time
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "protocol"))
+from client_threads import BROKEN, ClientThreads  # noqa: E402
 from sse_reader import read_all  # noqa: E402
-from talus_harness import Client, Daemon, FINAL, PATIENCE, fake_scene, wait_for  # noqa: E402
+from talus_harness import Daemon, FINAL, PATIENCE, fake_scene, wait_for  # noqa: E402
 
 FULL = os.environ.get("TALUS_FULL") == "1"
 KILLS = int(os.environ.get("TALUS_KILLS", "200" if FULL else os.environ.get("TALUS_KILLS_DEFAULT", "12")))
 SEED = int(os.environ.get("TALUS_SEED", str(int(time.time()))))
-BROKEN = (OSError, http.client.HTTPException, EOFError, ValueError)
 ROWS = (1, 4, 9, 16)
 PAGE = 500
 
 
-class Promises:
+class Promises(ClientThreads):
     """acknowledged: {key: (id, rows)} of every 201; the sets hold ids. `asked` was sent, whatever
     became of it; the other two were answered with 2xx."""
 
+    rest = 0.3
+
     def __init__(self, daemon):
-        self.daemon = daemon
+        super().__init__(daemon, SEED, (self.submit, self.submit, self.end_one, self.end_one))
         self.acknowledged, self.bodies = {}, {}
         self.cancel_asked, self.delete_asked = set(), set()
         self.cancelled, self.deleted = set(), set()
-        self.failures = []
-        self.stopping = threading.Event()
-        work = (self.submit, self.submit, self.end_one, self.end_one)
-        self.threads = [threading.Thread(target=self.loop, args=(task, index), daemon=True)
-                        for index, task in enumerate(work)]
-
-    def start(self):
-        for thread in self.threads:
-            thread.start()
-
-    def stop(self):
-        self.stopping.set()
-        for thread in self.threads:
-            thread.join(60)
-            if thread.is_alive():
-                self.failures.append(f"client thread hangs: {thread}")
-
-    def loop(self, task, index):
-        source = random.Random(SEED * 100 + index)
-        client = Client(self.daemon.port, 20)
-        count = 0
-        while not self.stopping.is_set():
-            try:
-                task(client, source, f"{index}-{count}")
-            except BROKEN:
-                client.close()
-                time.sleep(0.02)
-            except Exception as error:  # a defect of the test itself must show
-                self.failures.append(f"{task.__name__}: {error!r}")
-            count += 1
-            time.sleep(source.uniform(0, 0.3))
-        client.close()
 
     def submit(self, client, source, key):
         rows = source.choice(ROWS)

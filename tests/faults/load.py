@@ -1,63 +1,30 @@
 # SPDX-License-Identifier: Apache-2.0
 """Clients that keep a daemon busy while it is being killed, and remember what they were promised."""
 import hashlib
-import http.client
 import json
-import random
 import struct
 import threading
 import time
 
+from client_threads import BROKEN, ClientThreads
 from sse_reader import Stream
-from talus_harness import Client, fake_scene
-
-BROKEN = (OSError, http.client.HTTPException, EOFError, ValueError)
+from talus_harness import fake_scene
 
 
-class Load:
+class Load(ClientThreads):
     """acknowledged: {key: job id} of every 201. cancelled: jobs somebody asked to cancel;
     cancel_acknowledged: those with an answer of 2xx. deleted: DELETE was answered;
     maybe_deleted: it was sent, the answer never came."""
 
     def __init__(self, daemon, seed, with_crashes):
-        self.daemon, self.seed, self.with_crashes = daemon, seed, with_crashes
+        super().__init__(daemon, seed,
+                         [self.submit] * 3 + [self.cancel, self.remove, self.watch, self.download])
+        self.with_crashes = with_crashes
         self.acknowledged, self.bodies = {}, {}
         self.cancelled, self.cancel_acknowledged = set(), set()
         self.deleted, self.maybe_deleted = set(), set()
-        self.failures = []
         self.downloads = self.watched = 0
-        self.stopping = threading.Event()
         self.rush = threading.Event()  # while it is set, nobody rests between requests
-        work = [self.submit] * 3 + [self.cancel, self.remove, self.watch, self.download]
-        self.threads = [threading.Thread(target=self.loop, args=(task, index), daemon=True)
-                        for index, task in enumerate(work)]
-
-    def start(self):
-        for thread in self.threads:
-            thread.start()
-
-    def stop(self):
-        self.stopping.set()
-        for thread in self.threads:
-            thread.join(60)
-            if thread.is_alive():
-                self.failures.append(f"client thread hangs: {thread}")
-
-    def loop(self, task, index):
-        source = random.Random(self.seed * 1000 + index)
-        client = Client(self.daemon.port, 20)
-        count = 0
-        while not self.stopping.is_set():
-            try:
-                task(client, source, f"{index}-{count}")
-            except BROKEN:
-                client.close()
-                time.sleep(0.02)
-            except Exception as error:  # a defect of the test itself must show
-                self.failures.append(f"{task.__name__}: {error!r}")
-                time.sleep(0.2)
-            count += 1
-        client.close()
 
     def complain(self, text):
         if len(self.failures) < 100:
