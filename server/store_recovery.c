@@ -3,23 +3,28 @@
 
 #include "store_internal.h"
 
+struct visitor {
+    store_recovery_visit *visit;
+    void *context;
+};
+
+static bool row_visit(sqlite3_stmt *statement, void *context)
+{
+    const struct visitor *visitor = context;
+    visitor->visit((const char *)sqlite3_column_text(statement, 0),
+                   sqlite3_column_int64(statement, 1), visitor->context);
+    return true;
+}
+
 /* Visits rows of an identifier and a number. */
 static enum talus_status rows_visit(struct store *store, const char *sql,
                                     store_recovery_visit *visit, void *context,
                                     struct talus_error *error)
 {
-    enum talus_status status = TALUS_IO;
+    struct visitor visitor = {visit, context};
     (void)pthread_mutex_lock(&store->reader_mutex);
-    sqlite3_stmt *statement = store_prepare(store->reader, sql, error);
-    if (statement != NULL) {
-        int step;
-        while ((step = sqlite3_step(statement)) == SQLITE_ROW)
-            visit((const char *)sqlite3_column_text(statement, 0),
-                  sqlite3_column_int64(statement, 1), context);
-        status = step == SQLITE_DONE ? TALUS_OK : store_failure(store->reader, error);
-        /* It does not come again. */
-        (void)sqlite3_finalize(statement);
-    }
+    enum talus_status status = store_visit(store->reader, store_prepare(store->reader, sql, error),
+                                           row_visit, &visitor, error);
     (void)pthread_mutex_unlock(&store->reader_mutex);
     return status;
 }
