@@ -2,6 +2,7 @@
 #include "simulation_fixture.h"
 
 #include "boundaries/boundary.h"
+#include "shapes/shape.h"
 
 #include <stdio.h>
 
@@ -59,6 +60,15 @@ size_t simulation_fixture_add_sample(struct simulation_fixture *fixture,
     fixture_init_sample(&sample, material);
     memcpy(fixture->values[index], sample.values, sizeof sample.values);
     fixture_release(&sample);
+    return index;
+}
+
+size_t simulation_fixture_shape(const char *name)
+{
+    size_t index = 0;
+    while (index < shape_count && strcmp(shape_table[index]->name, name) != 0)
+        index++;
+    assert_true(index < shape_count);
     return index;
 }
 

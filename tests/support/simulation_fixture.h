@@ -30,6 +30,8 @@ size_t simulation_fixture_add_material(struct simulation_fixture *fixture, const
 /* Adds a model of the table with the parameters of fixture_init_sample. */
 size_t simulation_fixture_add_sample(struct simulation_fixture *fixture,
                                      const struct material *material);
+/* Index of a shape; fails the test if there is none. */
+size_t simulation_fixture_shape(const char *name);
 /* Adds a box of material with so many particles a cell and axis. */
 struct talus_body *simulation_fixture_add_box(struct simulation_fixture *fixture, size_t material,
                                               const double min[3], const double max[3],

@@ -14,14 +14,6 @@ static const char *const shapes[] = {"linear", "bspline2", "bspline3", "gimp"};
 static const double dampings[] = {0.1, 0.8};
 static const char *const update_names[] = {"modified_last", "last", "first"};
 
-static size_t shape_named(const char *name)
-{
-    size_t shape = 0;
-    while (strcmp(shape_table[shape]->name, name) != 0)
-        shape++;
-    return shape;
-}
-
 /* A cantilever that falls from its straight form. */
 static void build_cantilever(struct simulation_fixture *fixture)
 {
@@ -82,7 +74,7 @@ static void check_books(const struct problem *problem, const char *shape, double
 {
     struct simulation_fixture fixture;
     problem->build(&fixture);
-    fixture.scene.solver.shape_index = shape_named(shape);
+    fixture.scene.solver.shape_index = simulation_fixture_shape(shape);
     fixture.scene.solver.stress_update = update;
     fixture.scene.solver.local_damping = damping;
     struct talus_simulation *simulation = simulation_fixture_start(&fixture, 1);
@@ -133,7 +125,7 @@ static void test_rest(void **state)
     for (size_t shape = 0; shape < 2; shape++) {
         struct simulation_fixture fixture;
         build_cantilever(&fixture);
-        fixture.scene.solver.shape_index = shape_named(shapes[shape]);
+        fixture.scene.solver.shape_index = simulation_fixture_shape(shapes[shape]);
         fixture.scene.solver.local_damping = 0.3;
         fixture.scene.duration = 100;
         struct talus_simulation *simulation = simulation_fixture_start(&fixture, 1);

@@ -149,14 +149,6 @@ static void test_walls_that_move_along_are_not_felt(void **state)
     talus_simulation_destroy(simulation);
 }
 
-static size_t shape_named(const char *name)
-{
-    size_t index = 0;
-    while (strcmp(shape_table[index]->name, name) != 0)
-        index++;
-    return index;
-}
-
 /* A column of 1 m between a floor and a piston that comes down slowly by 0.1 m: at the end the
  * stress is the constrained modulus, K + 4 G / 3 = 1.2e6 Pa, times the logarithmic strain, over the
  * volume that is left, and the work is what the column stores. */
@@ -167,7 +159,8 @@ static void test_slow_compression(void **state)
     struct simulation_fixture fixture;
     build(&fixture);
     fixture.bodies[0].box_max[1] = 1.5;
-    fixture.scene.solver.shape_index = shape_named("bspline2"); /* particles change cells */
+    fixture.scene.solver.shape_index =
+        simulation_fixture_shape("bspline2"); /* particles change cells */
     struct talus_boundary *piston =
         simulation_fixture_add_plane(&fixture, "piston", 1, 1.5, -1, "velocity", 0);
     move(piston, 2, 0, 0)->velocity_tables[1] =

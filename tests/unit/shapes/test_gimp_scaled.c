@@ -126,9 +126,7 @@ static void build(struct simulation_fixture *fixture, const char *shape, double 
                                                          (double[3]){1.0, 1.0}, per_cell);
     body->lattice = TALUS_LATTICE_COUNT;
     body->lattice_value[0] = body->lattice_value[1] = 6 * per_cell;
-    fixture->scene.solver.shape_index = 0;
-    while (strcmp(shape_table[fixture->scene.solver.shape_index]->name, shape) != 0)
-        fixture->scene.solver.shape_index++;
+    fixture->scene.solver.shape_index = simulation_fixture_shape(shape);
 }
 
 static size_t first_slot(const struct particle_block *block)

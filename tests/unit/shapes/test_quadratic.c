@@ -18,8 +18,7 @@ static void build(struct simulation_fixture *fixture, size_t axes, const double 
     simulation_fixture_init(fixture, axes, 0.1, count);
     const size_t material = simulation_fixture_add_sample(fixture, material_find("linear_elastic"));
     simulation_fixture_add_box(fixture, material, min, max, 2);
-    while (strcmp(shape_table[fixture->scene.solver.shape_index]->name, "quadratic") != 0)
-        fixture->scene.solver.shape_index++;
+    fixture->scene.solver.shape_index = simulation_fixture_shape("quadratic");
 }
 
 static double node_mass(const struct sparse_grid *grid, const int32_t node[3])

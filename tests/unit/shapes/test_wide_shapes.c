@@ -261,8 +261,7 @@ static double largest_imbalance(const char *name)
     body->lattice_value[0] = 28;
     body->initial_stress = TALUS_INITIAL_GIVEN;
     body->stress[0] = body->stress[1] = body->stress[2] = stress;
-    while (strcmp(shape_table[fixture.scene.solver.shape_index]->name, name) != 0)
-        fixture.scene.solver.shape_index++;
+    fixture.scene.solver.shape_index = simulation_fixture_shape(name);
     struct talus_simulation *simulation = simulation_fixture_start(&fixture, 1);
     const struct node_blocks *nodes = &simulation->run.grid.nodes;
     double largest = 0;

@@ -135,8 +135,7 @@ static void test_the_limit_is_that_of_the_method(void **state)
         struct talus_error error = {0};
         build(&fixture, 0);
         struct talus_solver_options *solver = &fixture.scene.solver;
-        while (strcmp(shape_table[solver->shape_index]->name, methods[index].shape) != 0)
-            solver->shape_index++;
+        solver->shape_index = simulation_fixture_shape(methods[index].shape);
         while (strcmp(transfer_table[solver->transfer_index]->name, methods[index].transfer) != 0)
             solver->transfer_index++;
         solver->stress_update = methods[index].update;
